@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-2-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace gaiter::model {
+
+// Constants of the radial strain law eps_r(P) = a exp(bP) + c exp(dP), paper Eq. (2), as published.
+struct Compliance {
+  double a = 0;  // [1]
+  double b = 0;  // [1/Pa]
+  double c = 0;  // [1]
+  double d = 0;  // [1/Pa]
+};
+
+enum class ComplianceVariant { published, anchored };  // anchored: c = -a, so that eps_r(0) = 0
+enum class LegModel { compliant, rigid };
+enum class LegMaterial { compliance, neo_hookean };
+
+// One conical piece of leg; a bandage module covers it from end to end.
+struct Segment {
+  std::string name;
+  double height = 0;       // [m]
+  double lower_radius = 0;  // undeformed, at the end nearer the ankle [m]
+  double upper_radius = 0;  // undeformed, at the end nearer the knee [m]
+  Compliance compliance;
+
+  double mean_radius() const { return 0.5 * (lower_radius + upper_radius); }  // [m]
+};
+
+struct Leg {
+  std::vector<Segment> segments;  // ankle up
+  LegModel model = LegModel::compliant;
+  LegMaterial material = LegMaterial::compliance;
+  ComplianceVariant variant = ComplianceVariant::published;
+  double data_limit = 7000;      // pressure up to which the compliance was measured [Pa]
+  double young_modulus = 80e3;   // neo-Hookean leg [Pa]
+  double poisson_ratio = 0.4;    // neo-Hookean leg [1]
+};
+
+}  // namespace gaiter::model

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-2-Clause
+#pragma once
+
+#include "gaiter/model/scene.hpp"
+
+namespace gaiter::model {
+
+// Of a slice, and of a segment: the last of its slices' in this order, at rest or actuated.
+enum class Status : signed char {
+  contact,         // the bandage presses on the leg
+  slack,           // too wide to touch the leg even at rest
+  lifted,          // pressed at rest, lifted off under voltage
+  extrapolated,    // pressure beyond the compliance data
+  pulled_in,       // under voltage the bandage has no equilibrium of its own and none on the leg
+  no_equilibrium,  // none exists in the admissible range of radii
+  diverged         // the solver gave up; the numbers are NaN
+};
+
+// True where the numbers of a result can be used (pulled_in: the pressure is 0, as computed).
+constexpr bool trustworthy(Status status) {
+  return status != Status::no_equilibrium && status != Status::diverged;
+}
+
+// What every fidelity reports of one segment of one design. Names as in the archive.
+struct SegmentResult {
+  double pressure_rest = 0;                  // height average (1/H) int P dz [Pa]
+  double pressure_actuated = 0;              // [Pa]
+  double pressure_rest_rigid = 0;            // the same on a leg that does not give way [Pa]
+  double pressure_actuated_rigid = 0;        // [Pa]
+  double pressure_rest_area_mean = 0;        // normal force over the deformed area of the inner face [Pa]
+  double pressure_actuated_area_mean = 0;    // [Pa]
+  double actuation_drop = 0;                 // pressure_rest - pressure_actuated [Pa]
+  double actuation_pressure = 0;             // P_a of Eq. (8) at the actuated radius, height average [Pa]
+  double volume_initial = 0;                 // of the leg [m3]
+  double volume_rest = 0;                    // [m3]
+  double volume_actuated = 0;                // [m3]
+  double volume_change = 0;                  // (initial - actuated) / initial, Eq. (10) [1]
+  double radius_actuated = 0;                // of the leg, height average [m]
+  double stretch_actual = 0;                 // at rest, once the leg has given way, height average [1]
+  double electric_field_max = 0;             // true field, at the inner face of a layer [V/m]
+  double error_estimate = 0;                 // relative error of the pressures, estimated [1]
+  int iterations = 0;                        // Newton or fixed-point steps, the most of any slice
+  Status status = Status::contact;
+  Fidelity fidelity = Fidelity::slice;
+};
+
+}  // namespace gaiter::model
