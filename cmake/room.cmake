@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: BSD-2-Clause
+
+# A room of the program: sources in src/ROOM, headers in include/gaiter/ROOM, one library target gaiter_ROOM.
+# USES names other rooms or outside targets. A room without sources is a target of headers alone.
+function(gaiter_room ROOM)
+  cmake_parse_arguments(ARG "" "" "USES" ${ARGN})
+  set(LINKS)
+  foreach(ITEM IN LISTS ARG_USES)
+    if(TARGET gaiter_${ITEM})
+      list(APPEND LINKS gaiter_${ITEM})
+    else()
+      list(APPEND LINKS ${ITEM})
+    endif()
+  endforeach()
+  file(GLOB SOURCES CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${ROOM}/*.cpp)
+  if(SOURCES)
+    add_library(gaiter_${ROOM} STATIC ${SOURCES})
+    set(KIND PUBLIC)
+  else()
+    add_library(gaiter_${ROOM} INTERFACE)
+    set(KIND INTERFACE)
+  endif()
+  target_include_directories(gaiter_${ROOM} ${KIND} ${PROJECT_SOURCE_DIR}/include)
+  target_link_libraries(gaiter_${ROOM} ${KIND} ${LINKS})
+endfunction()

@@ -1,0 +1,4 @@
+# SPDX-License-Identifier: BSD-2-Clause
+include(cases_options.cmake OPTIONAL)
+include(cases_archive.cmake OPTIONAL)
+include(cases_slices.cmake OPTIONAL)
