@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-2-Clause
+#pragma once
+
+#include "gaiter/physics/slice_system.hpp"
+
+// The equilibrium of a slice, for a pack of slices at a time. Unknowns: the leg's strain eps (the radius is
+// r = R_c (1 - eps); eps keeps the digits of a small displacement that r would lose) and the interface
+// pressure P in units of the pack's pressure scale. Contact is the complementarity P >= 0, P >= P_t, P (P -
+// P_t) = 0. Residual:
+//   F1 = eps - eps_r(P),   F2 = P - P_t(eps), or P where both P and P_t are not positive;
+// Jacobian [1, -eps_r'; -P_t', 1]. On F1 = 0 this is one equation f(P) = P - P_t(eps_r(P)) = 0 whose root is
+// bracketed by P = 0 and the pressure that shrinks the leg until the bandage is slack: a step that would
+// leave its slice's bracket goes to P = 0, if that was not tried yet, or bisects.
+namespace gaiter::physics {
+
+struct PackState {
+  Pack strain, pressure;                    // the iterate
+  Pack strain_residual, pressure_residual;  // F1, F2
+  Pack strain_slope, bandage_slope;         // eps_r'(P); d P_t / d eps, 0 without contact
+  Pack low, high;                           // bracket of the pressure; low = -1 until P = 0 has been tried
+  Pack rounding;        // pressure at rest, of whose rounding errors an actuated P cannot be rid
+  Pack smallest_slope;  // least f' seen: near or below 0 there may be several equilibria
+  Pack iterations;
+  Pack open;    // 1 while the slice is being solved, else 0
+  Pack failed;  // 1 where the fixed point left the admissible range
+};
+
+// Rest: from the rigid answer, corrected to first order for the compliance of the leg. Also gives the
+// bandage's pressure on a rigid leg (may be negative: slack).
+void start_at_rest(const SliceShape& shape, const Pack* rows, PackState& state, Pack& rigid_pressure);
+
+// Actuated: from the rest state held in `state`. The root sought is the largest below the pressure at rest,
+// which is the one that a slowly rising voltage reaches.
+void start_actuated(PackState& state);
+
+// The paper's start: the undeformed leg at rest; under voltage the radius at rest, held in `state`.
+void start_fixed_point(bool at_rest, PackState& state);
+
+// Residual and Jacobian at the iterate, on F1 = 0 or not.
+void evaluate_residual(const SliceShape& shape, const Pack* rows, PackState& state);
+
+// Newton directions y = J^-1 F of (F1, F2) given.
+void solve_blocks(const Pack& strain_slope, const Pack& bandage_slope, const Pack& strain_residual,
+                  const Pack& pressure_residual, Pack& strain_direction, Pack& pressure_direction);
+
+// One damped Newton step of each open slice, P - direction, and the residual there. Far from the solution,
+// where bandage and leg differ by more than a factor of four, Newton's step for ln P = ln P_t is taken if it
+// is the larger. A slice closes when its next step is predicted to leave a relative error below `tolerance`;
+// that step is still taken.
+void advance_newton(const SliceShape& shape, const Pack* rows, const Pack& direction, double tolerance,
+                    PackState& state);
+
+// One step of the paper's iteration, P <- P - direction with direction = F2, for each open slice; it closes
+// when its radius changes by less than `tolerance` times the undeformed one.
+void advance_fixed_point(const SliceShape& shape, const Pack* rows, const Pack& direction, double tolerance,
+                         PackState& state);
+
+}  // namespace gaiter::physics

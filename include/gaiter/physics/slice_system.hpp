@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-2-Clause
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "gaiter/model/scene.hpp"
+#include "gaiter/physics/quadrature.hpp"
+#include "gaiter/physics/vector_math.hpp"
+
+namespace gaiter::physics {
+
+// What all slices of a system have in common.
+struct SliceShape {
+  Quadrature wall;  // points through the wall, in the logarithm of the reference radius
+  int ogden_terms = 1;
+  int layers = 0;  // 0: no voltage anywhere, the actuation is left out
+  model::LegMaterial material = model::LegMaterial::compliance;
+};
+
+// The reference wall of a bandage module: inner radius and thickness.
+struct Wall {
+  double inner_radius = 0;  // A [m]
+  double thickness = 0;     // B - A [m]
+  double gap = 0;           // undeformed leg radius less A, formed without cancellation [m]
+};
+
+// The wall of a module on a leg of radius `leg_radius` at the slice, in a segment of mean radius
+// `mean_radius`.
+Wall reference_wall(const model::Bandage& bandage, const model::Module& module, double mean_radius,
+                    double leg_radius);
+
+// The constants of many slices, as structure of arrays: packs of rows, a row holds one quantity of 64 slices.
+// Lengths are divided by the inner reference radius A of the wall, pressures by the pressure scale S of the
+// leg (1/b of the strain law; K + G/3 of the neo-Hookean leg).
+class SliceSystem {
+ public:
+  // Rows of a pack that are always there; the variable ones follow (see the accessors).
+  enum Row {
+    gap,
+    leg_radius,
+    log_wall,
+    leg_0,
+    leg_1,
+    leg_2,
+    leg_3,
+    pressure_limit,
+    pressure_scale,
+    fixed_rows
+  };
+
+  SliceSystem(SliceShape shape, std::size_t slices);
+
+  const SliceShape& shape() const { return shape_; }
+  std::size_t slices() const { return slices_; }
+  std::size_t packs() const { return packs_; }
+
+  // Constants of slice `index`. The radii of the calf and the wall are those of the slice.
+  void set(std::size_t index, const model::Leg& leg, const model::Segment& segment,
+           const model::Bandage& bandage, const Wall& wall, double leg_radius, double voltage);
+
+  // A system of `packs() == 1` whose slices all have the constants of slice `index` of this one.
+  SliceSystem replicate(std::size_t index) const;
+
+  const Pack* pack(std::size_t index) const { return rows_.data() + index * rows_per_pack_; }
+  double constant(std::size_t slice, int row) const {
+    return pack(slice / pack_width)[row][slice % pack_width];
+  }
+
+  int mu(int term) const { return fixed_rows + term; }
+  int alpha(int term) const { return fixed_rows + shape_.ogden_terms + term; }
+  int wall_point(int point) const { return fixed_rows + 2 * shape_.ogden_terms + point; }
+  int layer(int index)
+      const {  // three rows: (A/A_layer)^2, (B_layer^2 - A_layer^2)/A_layer^2, 2 eps V^2/(A_layer^2 S)
+    return fixed_rows + 2 * shape_.ogden_terms + static_cast<int>(shape_.wall.nodes.size()) + 3 * index;
+  }
+
+ private:
+  double& at(std::size_t slice, int row) {
+    return rows_[slice / pack_width * rows_per_pack_ + row][slice % pack_width];
+  }
+
+  SliceShape shape_;
+  std::size_t slices_, packs_, rows_per_pack_;
+  std::vector<Pack> rows_;
+};
+
+}  // namespace gaiter::physics

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-2-Clause
+#include "gaiter/physics/slice_kernel.hpp"
+
+namespace gaiter::physics {
+
+namespace {
+
+constexpr double largest_exponent = 300;  // of lambda^alpha; products of two such stay finite
+constexpr double largest_pressure = 1e100;
+constexpr double smallest_radius = 1e-12;  // over A
+
+// The fixed-count loops below are the vectorised ones.
+#define GAITER_EACH for (int i = 0; i < pack_width; ++i)
+
+// y = (r/R_c)^2 from P = (1 - y)(K + G y^{-5/3}): decreasing and convex in y, so that Newton's method climbs
+// monotonically from any y at which the pressure is too large.
+inline __attribute__((always_inline)) void neo_hookean_strain(const Pack& bulk, const Pack& shear,
+                                                              const Pack& pressure, Pack& strain,
+                                                              Pack& slope) {
+  Pack y;
+  GAITER_EACH {
+    // Both lie below the root: 1 - P/(K+G), and (G/2P)^{3/5} where that is at most 1/2.
+    const double linear = 1 - pressure[i] / (bulk[i] + shear[i]);
+    const double positive = pressure[i] > 1e-3 * shear[i] ? pressure[i] : 1e-3 * shear[i];
+    const double root = std::exp(0.6 * std::log(0.5 * shear[i] / positive));
+    const double carried = root < 0.5 ? root : 0.5;
+    y[i] = linear > carried ? linear : carried;
+  }
+  for (int iteration = 0; iteration < 60; ++iteration) {
+    double change = 0;
+    GAITER_EACH {
+      const double power = std::exp(-5.0 / 3 * std::log(y[i]));
+      const double value = (1 - y[i]) * (bulk[i] + shear[i] * power) - pressure[i];
+      const double derivative = -(bulk[i] + shear[i] * power) - (1 - y[i]) * shear[i] * 5 / 3 * power / y[i];
+      const double step = -value / derivative;
+      y[i] += step;
+      const double size = std::fabs(step) - 4e-16 * y[i];
+      change = size > change ? size : change;
+    }
+    if (!(change > 0)) break;
+  }
+  GAITER_EACH {
+    const double power = std::exp(-5.0 / 3 * std::log(y[i]));
+    const double derivative = -(bulk[i] + shear[i] * power) - (1 - y[i]) * shear[i] * 5 / 3 * power / y[i];
+    const double ratio = std::sqrt(y[i]);
+    strain[i] = pressure[i] / (bulk[i] + shear[i] * power) / (1 + ratio);  // (1 - y)/(1 + sqrt y)
+    slope[i] = -0.5 / (ratio * derivative);
+  }
+}
+
+inline __attribute__((always_inline)) void add_actuation(const SliceShape& shape, const Pack* layers,
+                                                         const Pack& swell, const Pack& swell_slope,
+                                                         double sign, Pack& pressure, Pack& slope) {
+  for (int k = 0; k < shape.layers; ++k) {
+    const Pack &ratio = layers[3 * k], &area = layers[3 * k + 1], &drive = layers[3 * k + 2];
+    GAITER_EACH {
+      const double inner = 1 + ratio[i] * swell[i];  // (a/A)^2 of the layer
+      const double outer = inner + area[i];          // (b/A)^2
+      const double log_wall = std::log1p(area[i] / inner);
+      const double maxwell = drive[i] * area[i] / (inner * outer * log_wall * log_wall);
+      const double relative = -1 / inner - 1 / outer + 2 * area[i] / (inner * outer * log_wall);
+      pressure[i] += sign * maxwell;
+      slope[i] += sign * maxwell * relative * ratio[i] * swell_slope[i];
+    }
+  }
+}
+
+// u = (r^2 - A^2)/A^2 and its derivative with respect to the leg's strain.
+inline __attribute__((always_inline)) void inner_swell(const Pack* rows, const Pack& strain, Pack& swell,
+                                                       Pack& swell_slope) {
+  const Pack &gap = rows[SliceSystem::gap], &leg = rows[SliceSystem::leg_radius];
+  GAITER_EACH {
+    const double wanted = gap[i] - leg[i] * strain[i];
+    const double excess = wanted > smallest_radius - 1 ? wanted : smallest_radius - 1;
+    swell[i] = excess * (2 + excess);
+    swell_slope[i] = -2 * leg[i] * (1 + excess);
+  }
+}
+
+}  // namespace
+
+GAITER_MULTIVERSION
+void leg_strain(const SliceShape& shape, const Pack* rows, const Pack& pressure, Pack& strain, Pack& slope) {
+  if (shape.material == model::LegMaterial::neo_hookean) {
+    neo_hookean_strain(rows[SliceSystem::leg_0], rows[SliceSystem::leg_1], pressure, strain, slope);
+    return;
+  }
+  const Pack &a = rows[SliceSystem::leg_0], &c = rows[SliceSystem::leg_1], &sum = rows[SliceSystem::leg_2],
+             &decay = rows[SliceSystem::leg_3];
+  GAITER_EACH {
+    const double grown = expm1(pressure[i]);
+    const double decayed = expm1(decay[i] * pressure[i]);
+    strain[i] = sum[i] + a[i] * grown + c[i] * decayed;
+    slope[i] = a[i] * (1 + grown) + c[i] * decay[i] * (1 + decayed);
+  }
+}
+
+GAITER_MULTIVERSION
+void bandage_pressure(const SliceShape& shape, const Pack* rows, const Pack& strain, Pack& pressure,
+                      Pack& slope) {
+  const int terms = shape.ogden_terms;
+  const Pack* mu = rows + SliceSystem::fixed_rows;
+  const Pack* alpha = mu + terms;
+  const Pack* wall = alpha + terms;
+  const int points = static_cast<int>(shape.wall.nodes.size());
+  const Pack* layers = wall + points;
+
+  Pack swell, swell_slope, log_stretch, stress, stress_slope, inverse;
+  inner_swell(rows, strain, swell, swell_slope);
+  GAITER_EACH pressure[i] = slope[i] = 0;
+  for (int j = 0; j < points; ++j) {
+    const Pack& ratio = wall[j];  // A^2/s
+    GAITER_EACH {
+      const double square = swell[i] * ratio[i];  // lambda^2 - 1
+      log_stretch[i] = 0.5 * log1p(square);
+      inverse[i] = 1 / (1 + square);
+      stress[i] = stress_slope[i] = 0;
+    }
+    for (int term = 0; term < terms; ++term) {
+      const Pack &modulus = mu[term], &exponent = alpha[term];
+      GAITER_EACH {
+        const double wanted = exponent[i] * log_stretch[i];
+        const double below = wanted < largest_exponent ? wanted : largest_exponent;
+        const double power = expm1(below > -largest_exponent ? below : -largest_exponent);
+        const double reciprocal = 1 / (1 + power);
+        const double hyperbolic_sine = 0.5 * (power + power * reciprocal);
+        const double hyperbolic_cosine = hyperbolic_sine + reciprocal;
+        stress[i] += modulus[i] * hyperbolic_sine;
+        stress_slope[i] += modulus[i] * (exponent[i] * hyperbolic_cosine - 2 * hyperbolic_sine);
+      }
+    }
+    const double weight = shape.wall.weights[j];
+    GAITER_EACH {
+      const double share = weight * inverse[i];
+      pressure[i] += share * stress[i];
+      slope[i] += share * inverse[i] * ratio[i] * stress_slope[i];
+    }
+  }
+  const Pack& log_wall = rows[SliceSystem::log_wall];
+  GAITER_EACH {
+    pressure[i] *= log_wall[i];
+    slope[i] *= 0.5 * log_wall[i] * swell_slope[i];
+  }
+  add_actuation(shape, layers, swell, swell_slope, -1, pressure, slope);
+  GAITER_EACH pressure[i] = pressure[i] < largest_pressure ? pressure[i] : largest_pressure;
+}
+
+GAITER_MULTIVERSION
+void actuation_pressure(const SliceShape& shape, const Pack* rows, const Pack& strain, Pack& pressure,
+                        Pack& slope) {
+  Pack swell, swell_slope;
+  inner_swell(rows, strain, swell, swell_slope);
+  GAITER_EACH pressure[i] = slope[i] = 0;
+  const Pack* layers =
+      rows + SliceSystem::fixed_rows + 2 * shape.ogden_terms + static_cast<int>(shape.wall.nodes.size());
+  add_actuation(shape, layers, swell, swell_slope, 1, pressure, slope);
+}
+
+}  // namespace gaiter::physics

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSD-2-Clause
+#include "gaiter/physics/slice_newton.hpp"
+
+#include "gaiter/physics/slice_kernel.hpp"
+
+namespace gaiter::physics {
+
+namespace {
+
+constexpr double epsilon = 2.2e-16;
+constexpr double far =
+    4;  // ratio of the bandage's and the leg's pressure beyond which logarithms are compared
+
+#define GAITER_EACH for (int i = 0; i < pack_width; ++i)
+
+inline __attribute__((always_inline)) double any(const Pack& flags) {
+  double sum = 0;
+  GAITER_EACH sum += flags[i];
+  return sum;
+}
+
+// f and f' of one slice from its block.
+inline __attribute__((always_inline)) double scalar_slope(const PackState& state, int i) {
+  return 1 - state.bandage_slope[i] * state.strain_slope[i];
+}
+
+inline __attribute__((always_inline)) void initialise(PackState& state) {
+  GAITER_EACH {
+    state.low[i] = -1;
+    state.smallest_slope[i] = 1;
+    state.iterations[i] = state.failed[i] = 0;
+    state.open[i] = 1;
+  }
+}
+
+}  // namespace
+
+GAITER_MULTIVERSION
+void start_at_rest(const SliceShape& shape, const Pack* rows, PackState& state, Pack& rigid_pressure) {
+  Pack rigid_slope, capped;
+  GAITER_EACH state.strain[i] = 0;
+  bandage_pressure(shape, rows, state.strain, rigid_pressure, rigid_slope);
+  initialise(state);
+  const Pack& limit = rows[SliceSystem::pressure_limit];
+  GAITER_EACH {
+    const double rigid = rigid_pressure[i] > 0 ? rigid_pressure[i] : 0;
+    capped[i] = rigid > limit[i] ? 1 : 0;
+    state.high[i] = limit[i];
+    state.rounding[i] = 0;
+    state.pressure[i] = capped[i] > 0 ? limit[i] : rigid;
+  }
+  leg_strain(shape, rows, state.pressure, state.strain, state.strain_slope);
+  // With the bandage as a power law, P = rigid exp(-k eps): one Newton step for ln P + k eps_r(P) = ln rigid.
+  // A bandage so stiff that it would crush the leg starts where it goes slack instead.
+  GAITER_EACH {
+    const double k = rigid_pressure[i] > 0 ? -rigid_slope[i] / rigid_pressure[i] : 0;
+    const double pressure = state.pressure[i];
+    const double step = -pressure * k * state.strain[i] / (1 + pressure * k * state.strain_slope[i]);
+    const double moved = pressure + step > 0 ? pressure + step : 0.5 * pressure;
+    const double kept = capped[i] > 0 || moved >= limit[i] ? pressure : moved;
+    state.strain[i] += state.strain_slope[i] * (kept - pressure);
+    state.pressure[i] = kept;
+  }
+}
+
+void start_actuated(PackState& state) {
+  initialise(state);
+  GAITER_EACH {
+    state.high[i] = state.rounding[i] = state.pressure[i];
+    if (!(state.pressure[i] > 0)) state.open[i] = 0;
+  }
+}
+
+void start_fixed_point(bool at_rest, PackState& state) {
+  initialise(state);
+  if (at_rest) GAITER_EACH state.strain[i] = state.pressure[i] = 0;
+}
+
+GAITER_MULTIVERSION
+void evaluate_residual(const SliceShape& shape, const Pack* rows, PackState& state) {
+  Pack strain, pressure;
+  leg_strain(shape, rows, state.pressure, strain, state.strain_slope);
+  bandage_pressure(shape, rows, state.strain, pressure, state.bandage_slope);
+  GAITER_EACH {
+    state.strain_residual[i] = state.strain[i] - strain[i];
+    const bool pressing = state.pressure[i] > 0 || pressure[i] > 0;
+    state.pressure_residual[i] = state.pressure[i] - (pressing ? pressure[i] : 0);
+    state.bandage_slope[i] = pressing ? state.bandage_slope[i] : 0;
+  }
+}
+
+GAITER_MULTIVERSION
+void solve_blocks(const Pack& strain_slope, const Pack& bandage_slope, const Pack& strain_residual,
+                  const Pack& pressure_residual, Pack& strain_direction, Pack& pressure_direction) {
+  GAITER_EACH {
+    const double determinant = 1 - bandage_slope[i] * strain_slope[i];
+    pressure_direction[i] = (pressure_residual[i] + bandage_slope[i] * strain_residual[i]) / determinant;
+    strain_direction[i] = strain_residual[i] + strain_slope[i] * pressure_direction[i];
+  }
+}
+
+GAITER_MULTIVERSION
+void advance_newton(const SliceShape& shape, const Pack* rows, const Pack& direction, double tolerance,
+                    PackState& state) {
+  Pack trial, quadratic, remote;
+  GAITER_EACH {
+    const double pressure = state.pressure[i];
+    const double bandage = pressure - state.pressure_residual[i];
+    trial[i] = pressure - direction[i];
+    remote[i] = state.open[i] > 0 && pressure > 0 && bandage > 0 &&
+                        (bandage > far * pressure || pressure > far * bandage)
+                    ? 1
+                    : 0;
+  }
+  if (any(remote) > 0) GAITER_EACH {
+      const double pressure = state.pressure[i];
+      const double bandage = remote[i] > 0 ? pressure - state.pressure_residual[i] : 1.0;
+      const double slope = 1 - (1 - scalar_slope(state, i)) * pressure / bandage;
+      const double step = pressure * log(remote[i] > 0 ? bandage / pressure : 1.0) / slope;
+      trial[i] = remote[i] > 0 && std::fabs(step) > std::fabs(direction[i]) ? pressure + step : trial[i];
+    }
+  GAITER_EACH {
+    const double low = state.low[i], high = state.high[i];
+    const double wanted = low < 0 && trial[i] <= 0 ? 0 : trial[i];
+    const bool inside = wanted > low && wanted < high;
+    const double floor = low > 0 ? low : 0;
+    const double middle = low > 0 ? std::sqrt(low * high) : 0.5 * (floor + high);
+    const double chosen = inside ? wanted : middle;
+    quadratic[i] = inside && !(remote[i] > 0) ? 1 : 0;
+    trial[i] = state.open[i] > 0 ? chosen : state.pressure[i];
+  }
+
+  Pack strain, strain_slope, bandage, bandage_slope;
+  leg_strain(shape, rows, trial, strain, strain_slope);
+  bandage_pressure(shape, rows, strain, bandage, bandage_slope);
+
+  GAITER_EACH {
+    const bool open = state.open[i] > 0;
+    const bool pressing = trial[i] > 0 || bandage[i] > 0;
+    const double steep = pressing ? bandage_slope[i] : 0;
+    const double residual = trial[i] - (pressing ? bandage[i] : 0);
+    const double slope = 1 - steep * strain_slope[i];
+    const double taken = std::fabs(trial[i] - state.pressure[i]);
+    const double next = std::fabs(residual / slope);
+
+    const double low = residual < 0 ? trial[i] : state.low[i];
+    const double high = residual < 0 ? state.high[i] : trial[i];
+    // A Newton step of size `taken` that leaves a step `next` converges quadratically with constant
+    // next/taken^2.
+    const bool converging = quadratic[i] > 0 && slope > 0 && next < 0.1 * taken;
+    const double error = converging ? next * (next / taken) * (next / taken) : next;
+    const double rounding = std::fabs(bandage[i]) + state.rounding[i];
+    const double noise = 2 * epsilon * (trial[i] + rounding / (slope > 1 ? slope : 1));
+    const bool collapsed = high - low <= 2 * epsilon * high;
+    const bool closing =
+        residual == 0 || (slope > 0 && (error <= tolerance * trial[i] || next <= noise)) || collapsed;
+    const double polished = trial[i] - residual / slope;
+    const bool polish = closing && slope > 0 && polished > (low > 0 ? low : 0) && polished < high;
+
+    const double pressure = polish ? polished : trial[i];
+    state.pressure[i] = open ? pressure : state.pressure[i];
+    state.strain[i] = open ? strain[i] + strain_slope[i] * (pressure - trial[i]) : state.strain[i];
+    state.strain_residual[i] = open ? 0 : state.strain_residual[i];
+    state.pressure_residual[i] = open ? residual : state.pressure_residual[i];
+    state.strain_slope[i] = open ? strain_slope[i] : state.strain_slope[i];
+    state.bandage_slope[i] = open ? steep : state.bandage_slope[i];
+    state.low[i] = open ? low : state.low[i];
+    state.high[i] = open ? high : state.high[i];
+    state.smallest_slope[i] = open && slope < state.smallest_slope[i] ? slope : state.smallest_slope[i];
+    state.iterations[i] += state.open[i];
+    state.open[i] = open && !closing ? 1 : 0;
+  }
+}
+
+GAITER_MULTIVERSION
+void advance_fixed_point(const SliceShape& shape, const Pack* rows, const Pack& direction, double tolerance,
+                         PackState& state) {
+  Pack trial, strain, strain_slope;
+  const Pack& limit = rows[SliceSystem::pressure_limit];
+  GAITER_EACH {
+    const double wanted = state.pressure[i] - direction[i];
+    const bool admissible = wanted >= 0 && wanted < limit[i];
+    state.failed[i] = state.open[i] > 0 && !admissible ? 1 : state.failed[i];
+    trial[i] = state.open[i] > 0 && admissible ? wanted : state.pressure[i];
+  }
+  leg_strain(shape, rows, trial, strain, strain_slope);
+  Pack change;
+  GAITER_EACH {
+    const bool open = state.open[i] > 0;
+    change[i] = std::fabs(strain[i] - state.strain[i]);
+    state.pressure[i] = trial[i];
+    state.strain[i] = open ? strain[i] : state.strain[i];
+  }
+  evaluate_residual(shape, rows, state);
+  GAITER_EACH {
+    state.iterations[i] += state.open[i];
+    state.open[i] = state.open[i] > 0 && !(state.failed[i] > 0) && change[i] >= tolerance ? 1 : 0;
+  }
+}
+
+}  // namespace gaiter::physics
