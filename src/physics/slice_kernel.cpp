@@ -68,7 +68,7 @@ inline __attribute__((always_inline)) void add_actuation(const SliceShape& shape
 // u = (r^2 - A^2)/A^2 and its derivative with respect to the leg's strain.
 inline __attribute__((always_inline)) void inner_swell(const Pack* rows, const Pack& strain, Pack& swell,
                                                        Pack& swell_slope) {
-  const Pack &gap = rows[SliceSystem::gap], &leg = rows[SliceSystem::leg_radius];
+  const Pack &gap = rows[SliceShape::gap], &leg = rows[SliceShape::leg_radius];
   GAITER_EACH {
     const double wanted = gap[i] - leg[i] * strain[i];
     const double excess = wanted > smallest_radius - 1 ? wanted : smallest_radius - 1;
@@ -82,11 +82,11 @@ inline __attribute__((always_inline)) void inner_swell(const Pack* rows, const P
 GAITER_MULTIVERSION
 void leg_strain(const SliceShape& shape, const Pack* rows, const Pack& pressure, Pack& strain, Pack& slope) {
   if (shape.material == model::LegMaterial::neo_hookean) {
-    neo_hookean_strain(rows[SliceSystem::leg_0], rows[SliceSystem::leg_1], pressure, strain, slope);
+    neo_hookean_strain(rows[SliceShape::leg_0], rows[SliceShape::leg_1], pressure, strain, slope);
     return;
   }
-  const Pack &a = rows[SliceSystem::leg_0], &c = rows[SliceSystem::leg_1], &sum = rows[SliceSystem::leg_2],
-             &decay = rows[SliceSystem::leg_3];
+  const Pack &a = rows[SliceShape::leg_0], &c = rows[SliceShape::leg_1], &sum = rows[SliceShape::leg_2],
+             &decay = rows[SliceShape::leg_3];
   GAITER_EACH {
     const double grown = expm1(pressure[i]);
     const double decayed = expm1(decay[i] * pressure[i]);
@@ -99,11 +99,9 @@ GAITER_MULTIVERSION
 void bandage_pressure(const SliceShape& shape, const Pack* rows, const Pack& strain, Pack& pressure,
                       Pack& slope) {
   const int terms = shape.ogden_terms;
-  const Pack* mu = rows + SliceSystem::fixed_rows;
-  const Pack* alpha = mu + terms;
-  const Pack* wall = alpha + terms;
+  const Pack *mu = rows + shape.mu_row(0), *alpha = rows + shape.alpha_row(0),
+             *wall = rows + shape.wall_row(0);
   const int points = static_cast<int>(shape.wall.nodes.size());
-  const Pack* layers = wall + points;
 
   Pack swell, swell_slope, log_stretch, stress, stress_slope, inverse;
   inner_swell(rows, strain, swell, swell_slope);
@@ -136,13 +134,29 @@ void bandage_pressure(const SliceShape& shape, const Pack* rows, const Pack& str
       slope[i] += share * inverse[i] * ratio[i] * stress_slope[i];
     }
   }
-  const Pack& log_wall = rows[SliceSystem::log_wall];
+  const Pack& log_wall = rows[SliceShape::log_wall];
   GAITER_EACH {
     pressure[i] *= log_wall[i];
     slope[i] *= 0.5 * log_wall[i] * swell_slope[i];
   }
-  add_actuation(shape, layers, swell, swell_slope, -1, pressure, slope);
+  add_actuation(shape, rows + shape.layer_row(0), swell, swell_slope, -1, pressure, slope);
   GAITER_EACH pressure[i] = pressure[i] < largest_pressure ? pressure[i] : largest_pressure;
+}
+
+GAITER_MULTIVERSION
+void largest_field(const SliceShape& shape, const Pack* rows, const Pack& strain, Pack& field) {
+  Pack swell, swell_slope;
+  inner_swell(rows, strain, swell, swell_slope);
+  GAITER_EACH field[i] = 0;
+  for (int k = 0; k < shape.layers; ++k) {
+    const Pack* layer = rows + shape.layer_row(k);
+    GAITER_EACH {
+      const double inner = 1 + layer[0][i] * swell[i];
+      const double log_wall = std::log1p(layer[1][i] / inner);
+      const double here = layer[2][i] > 0 ? 2 / (std::sqrt(inner / layer[0][i]) * log_wall) : 0;
+      field[i] = here > field[i] ? here : field[i];
+    }
+  }
 }
 
 GAITER_MULTIVERSION
@@ -151,9 +165,7 @@ void actuation_pressure(const SliceShape& shape, const Pack* rows, const Pack& s
   Pack swell, swell_slope;
   inner_swell(rows, strain, swell, swell_slope);
   GAITER_EACH pressure[i] = slope[i] = 0;
-  const Pack* layers =
-      rows + SliceSystem::fixed_rows + 2 * shape.ogden_terms + static_cast<int>(shape.wall.nodes.size());
-  add_actuation(shape, layers, swell, swell_slope, 1, pressure, slope);
+  add_actuation(shape, rows + shape.layer_row(0), swell, swell_slope, 1, pressure, slope);
 }
 
 }  // namespace gaiter::physics

@@ -41,7 +41,7 @@ void start_at_rest(const SliceShape& shape, const Pack* rows, PackState& state, 
   GAITER_EACH state.strain[i] = 0;
   bandage_pressure(shape, rows, state.strain, rigid_pressure, rigid_slope);
   initialise(state);
-  const Pack& limit = rows[SliceSystem::pressure_limit];
+  const Pack& limit = rows[SliceShape::pressure_limit];
   GAITER_EACH {
     const double rigid = rigid_pressure[i] > 0 ? rigid_pressure[i] : 0;
     capped[i] = rigid > limit[i] ? 1 : 0;
@@ -176,7 +176,7 @@ GAITER_MULTIVERSION
 void advance_fixed_point(const SliceShape& shape, const Pack* rows, const Pack& direction, double tolerance,
                          PackState& state) {
   Pack trial, strain, strain_slope;
-  const Pack& limit = rows[SliceSystem::pressure_limit];
+  const Pack& limit = rows[SliceShape::pressure_limit];
   GAITER_EACH {
     const double wanted = state.pressure[i] - direction[i];
     const bool admissible = wanted >= 0 && wanted < limit[i];

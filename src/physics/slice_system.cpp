@@ -33,9 +33,10 @@ Wall reference_wall(const model::Bandage& bandage, const model::Module& module, 
 
 SliceSystem::SliceSystem(SliceShape shape, std::size_t slices)
     : shape_(std::move(shape)),
+      layers_(shape_.layers),
       slices_(slices),
       packs_((slices + pack_width - 1) / pack_width),
-      rows_per_pack_(layer(shape_.layers)),
+      rows_per_pack_(shape_.layer_row(layers_)),
       rows_(packs_ * rows_per_pack_) {}
 
 void SliceSystem::set(std::size_t index, const model::Leg& leg, const model::Segment& segment,
@@ -43,30 +44,33 @@ void SliceSystem::set(std::size_t index, const model::Leg& leg, const model::Seg
   const double inner = wall.inner_radius;
   const LegConstants constants = leg_constants(leg, segment);
   const double scale = constants.pressure_scale;
-  at(index, gap) = wall.gap / inner;
-  at(index, leg_radius) = slice_radius / inner;
+  at(index, SliceShape::gap) = wall.gap / inner;
+  at(index, SliceShape::leg_radius) = slice_radius / inner;
   const double area = wall.thickness * (2 * inner + wall.thickness) / (inner * inner);  // (B^2 - A^2)/A^2
   const double log_area = std::log1p(area);
-  at(index, log_wall) = log_area;
-  for (int k = 0; k < 4; ++k) at(index, leg_0 + k) = constants.value[k];
+  at(index, SliceShape::log_wall) = log_area;
+  for (int k = 0; k < 4; ++k) at(index, SliceShape::leg_0 + k) = constants.value[k];
   // The bandage is slack at r = A, so no equilibrium lies beyond that strain; without contact any bound will
   // do.
   const double bound = pressure_bound(leg, constants, wall.gap / slice_radius);
-  at(index, pressure_limit) = bound > 0 ? bound : 1;
-  at(index, pressure_scale) = scale;
+  at(index, SliceShape::pressure_limit) = bound > 0 ? bound : 1;
+  at(index, SliceShape::pressure_scale) = scale;
   for (int i = 0; i < shape_.ogden_terms; ++i) {
-    at(index, mu(i)) = bandage.ogden[i].mu / scale;
-    at(index, alpha(i)) = bandage.ogden[i].alpha;
+    at(index, shape_.mu_row(i)) = bandage.ogden[i].mu / scale;
+    at(index, shape_.alpha_row(i)) = bandage.ogden[i].alpha;
   }
   for (std::size_t j = 0; j < shape_.wall.nodes.size(); ++j)
-    at(index, wall_point(static_cast<int>(j))) = std::exp(-log_area * shape_.wall.nodes[j]);
-  for (int k = 0; k < shape_.layers; ++k) {
-    const double thickness = wall.thickness / shape_.layers;
-    const double layer_inner = inner + k * thickness;
-    at(index, layer(k)) = (inner / layer_inner) * (inner / layer_inner);
-    at(index, layer(k) + 1) = thickness * (2 * layer_inner + thickness) / (layer_inner * layer_inner);
-    at(index, layer(k) + 2) = 2 * vacuum_permittivity * bandage.permittivity * (voltage / layer_inner) *
-                              (voltage / layer_inner) / scale;
+    at(index, shape_.wall_row(static_cast<int>(j))) = std::exp(-log_area * shape_.wall.nodes[j]);
+  for (int k = 0; k < layers_; ++k) {
+    // A slice with fewer layers than the system has the rest of them without voltage.
+    const double thickness = wall.thickness / bandage.layers;
+    const double layer_inner = inner + (k < bandage.layers ? k * thickness : 0);
+    const double field = k < bandage.layers ? voltage / layer_inner : 0;  // [V/m]
+    at(index, shape_.layer_row(k)) = (inner / layer_inner) * (inner / layer_inner);
+    at(index, shape_.layer_row(k) + 1) =
+        thickness * (2 * layer_inner + thickness) / (layer_inner * layer_inner);
+    at(index, shape_.layer_row(k) + 2) =
+        2 * vacuum_permittivity * bandage.permittivity * field * field / scale;
   }
   // The pack's spare places repeat the last slice, so that no garbage slows or spoils the pack.
   if (index + 1 != slices_) return;
@@ -76,7 +80,10 @@ void SliceSystem::set(std::size_t index, const model::Leg& leg, const model::Seg
 }
 
 SliceSystem SliceSystem::replicate(std::size_t index) const {
-  SliceSystem copy(shape_, pack_width);
+  SliceShape shape = shape_;
+  shape.layers = layers_;
+  SliceSystem copy(shape, pack_width);
+  copy.shape_.layers = shape_.layers;
   for (std::size_t row = 0; row < rows_per_pack_; ++row)
     for (int i = 0; i < pack_width; ++i) copy.rows_[row][i] = constant(index, static_cast<int>(row));
   return copy;

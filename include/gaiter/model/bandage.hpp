@@ -23,12 +23,12 @@ struct Module {
 };
 
 struct Bandage {
-  std::vector<Module> modules;   // one a segment, same order
-  double thickness = 1e-3;       // undeformed wall [m]
+  std::vector<Module> modules;  // one a segment, same order
+  double thickness = 1e-3;      // undeformed wall [m]
   LengthAt length_at = LengthAt::outer;
   std::vector<OgdenTerm> ogden;
-  double permittivity = 1;       // relative [1]
-  int layers = 1;                // of equal reference thickness, electrically in parallel
+  double permittivity = 1;  // relative [1]
+  int layers = 1;           // of equal reference thickness, electrically in parallel
   double breakdown_field = std::numeric_limits<double>::infinity();  // [V/m]
 };
 

@@ -21,7 +21,7 @@ enum class LegMaterial { compliance, neo_hookean };
 // One conical piece of leg; a bandage module covers it from end to end.
 struct Segment {
   std::string name;
-  double height = 0;       // [m]
+  double height = 0;        // [m]
   double lower_radius = 0;  // undeformed, at the end nearer the ankle [m]
   double upper_radius = 0;  // undeformed, at the end nearer the knee [m]
   Compliance compliance;
@@ -34,9 +34,9 @@ struct Leg {
   LegModel model = LegModel::compliant;
   LegMaterial material = LegMaterial::compliance;
   ComplianceVariant variant = ComplianceVariant::published;
-  double data_limit = 7000;      // pressure up to which the compliance was measured [Pa]
-  double young_modulus = 80e3;   // neo-Hookean leg [Pa]
-  double poisson_ratio = 0.4;    // neo-Hookean leg [1]
+  double data_limit = 7000;     // pressure up to which the compliance was measured [Pa]
+  double young_modulus = 80e3;  // neo-Hookean leg [Pa]
+  double poisson_ratio = 0.4;   // neo-Hookean leg [1]
 };
 
 }  // namespace gaiter::model

@@ -23,23 +23,23 @@ constexpr bool trustworthy(Status status) {
 
 // What every fidelity reports of one segment of one design. Names as in the archive.
 struct SegmentResult {
-  double pressure_rest = 0;                  // height average (1/H) int P dz [Pa]
-  double pressure_actuated = 0;              // [Pa]
-  double pressure_rest_rigid = 0;            // the same on a leg that does not give way [Pa]
-  double pressure_actuated_rigid = 0;        // [Pa]
-  double pressure_rest_area_mean = 0;        // normal force over the deformed area of the inner face [Pa]
-  double pressure_actuated_area_mean = 0;    // [Pa]
-  double actuation_drop = 0;                 // pressure_rest - pressure_actuated [Pa]
-  double actuation_pressure = 0;             // P_a of Eq. (8) at the actuated radius, height average [Pa]
-  double volume_initial = 0;                 // of the leg [m3]
-  double volume_rest = 0;                    // [m3]
-  double volume_actuated = 0;                // [m3]
-  double volume_change = 0;                  // (initial - actuated) / initial, Eq. (10) [1]
-  double radius_actuated = 0;                // of the leg, height average [m]
-  double stretch_actual = 0;                 // at rest, once the leg has given way, height average [1]
-  double electric_field_max = 0;             // true field, at the inner face of a layer [V/m]
-  double error_estimate = 0;                 // relative error of the pressures, estimated [1]
-  int iterations = 0;                        // Newton or fixed-point steps, the most of any slice
+  double pressure_rest = 0;                // height average (1/H) int P dz [Pa]
+  double pressure_actuated = 0;            // [Pa]
+  double pressure_rest_rigid = 0;          // the same on a leg that does not give way [Pa]
+  double pressure_actuated_rigid = 0;      // [Pa]
+  double pressure_rest_area_mean = 0;      // normal force over the deformed area of the inner face [Pa]
+  double pressure_actuated_area_mean = 0;  // [Pa]
+  double actuation_drop = 0;               // pressure_rest - pressure_actuated [Pa]
+  double actuation_pressure = 0;           // P_a of Eq. (8) at the actuated radius, height average [Pa]
+  double volume_initial = 0;               // of the leg [m3]
+  double volume_rest = 0;                  // [m3]
+  double volume_actuated = 0;              // [m3]
+  double volume_change = 0;                // (initial - actuated) / initial, Eq. (10) [1]
+  double radius_actuated = 0;              // of the leg, height average [m]
+  double stretch_actual = 0;               // at rest, once the leg has given way, height average [1]
+  double electric_field_max = 0;           // true field, at the inner face of a layer [V/m]
+  double error_estimate = 0;               // relative error of the pressures, estimated [1]
+  int iterations = 0;                      // Newton or fixed-point steps, the most of any slice
   Status status = Status::contact;
   Fidelity fidelity = Fidelity::slice;
 };

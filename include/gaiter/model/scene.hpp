@@ -13,8 +13,8 @@ enum class SliceSolver { newton, fixed_point };
 // How finely, and by which algorithm, the slice model is solved.
 struct Discretisation {
   SliceRule slice_rule = SliceRule::gauss;
-  int slice_count = 6;   // a segment
-  int wall_points = 0;   // Gauss points through the wall; 0: as many as the wall needs
+  int slice_count = 6;  // a segment
+  int wall_points = 0;  // Gauss points through the wall; 0: as many as the wall needs
   SliceSolver slice_solver = SliceSolver::newton;
   double fixed_point_tolerance = 1e-4;  // change of r over the undeformed radius at which the paper stops [1]
 };

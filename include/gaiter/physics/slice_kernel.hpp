@@ -22,6 +22,9 @@ void leg_strain(const SliceShape& shape, const Pack* rows, const Pack& pressure,
 void bandage_pressure(const SliceShape& shape, const Pack* rows, const Pack& strain, Pack& pressure,
                       Pack& slope);
 
+// True electric field at the inner face of the layer where it is largest, times A / V.
+void largest_field(const SliceShape& shape, const Pack* rows, const Pack& strain, Pack& field);
+
 // P_a alone, and d P_a / d strain; zero where shape.layers is 0.
 void actuation_pressure(const SliceShape& shape, const Pack* rows, const Pack& strain, Pack& pressure,
                         Pack& slope);

@@ -10,12 +10,31 @@
 
 namespace gaiter::physics {
 
-// What all slices of a system have in common.
+// What all slices of a system have in common, and so where a pack's rows are.
 struct SliceShape {
   Quadrature wall;  // points through the wall, in the logarithm of the reference radius
   int ogden_terms = 1;
-  int layers = 0;  // 0: no voltage anywhere, the actuation is left out
+  int layers = 0;  // 0: no voltage, the actuation is left out
   model::LegMaterial material = model::LegMaterial::compliance;
+
+  // Rows that are always there; the variable ones follow.
+  enum Row {
+    gap,
+    leg_radius,
+    log_wall,
+    leg_0,
+    leg_1,
+    leg_2,
+    leg_3,
+    pressure_limit,
+    pressure_scale,
+    fixed_rows
+  };
+  int mu_row(int term) const { return fixed_rows + term; }
+  int alpha_row(int term) const { return mu_row(ogden_terms) + term; }
+  int wall_row(int point) const { return alpha_row(ogden_terms) + point; }
+  // Three rows a layer: (A/A_layer)^2, (B_layer^2 - A_layer^2)/A_layer^2, 2 eps V^2/(A_layer^2 S).
+  int layer_row(int layer) const { return wall_row(static_cast<int>(wall.nodes.size())) + 3 * layer; }
 };
 
 // The reference wall of a bandage module: inner radius and thickness.
@@ -35,20 +54,6 @@ Wall reference_wall(const model::Bandage& bandage, const model::Module& module, 
 // leg (1/b of the strain law; K + G/3 of the neo-Hookean leg).
 class SliceSystem {
  public:
-  // Rows of a pack that are always there; the variable ones follow (see the accessors).
-  enum Row {
-    gap,
-    leg_radius,
-    log_wall,
-    leg_0,
-    leg_1,
-    leg_2,
-    leg_3,
-    pressure_limit,
-    pressure_scale,
-    fixed_rows
-  };
-
   SliceSystem(SliceShape shape, std::size_t slices);
 
   const SliceShape& shape() const { return shape_; }
@@ -59,6 +64,9 @@ class SliceSystem {
   void set(std::size_t index, const model::Leg& leg, const model::Segment& segment,
            const model::Bandage& bandage, const Wall& wall, double leg_radius, double voltage);
 
+  // With the voltage on, or off as if there were none (the rest state).
+  void energise(bool on) { shape_.layers = on ? layers_ : 0; }
+
   // A system of `packs() == 1` whose slices all have the constants of slice `index` of this one.
   SliceSystem replicate(std::size_t index) const;
 
@@ -67,20 +75,13 @@ class SliceSystem {
     return pack(slice / pack_width)[row][slice % pack_width];
   }
 
-  int mu(int term) const { return fixed_rows + term; }
-  int alpha(int term) const { return fixed_rows + shape_.ogden_terms + term; }
-  int wall_point(int point) const { return fixed_rows + 2 * shape_.ogden_terms + point; }
-  int layer(int index)
-      const {  // three rows: (A/A_layer)^2, (B_layer^2 - A_layer^2)/A_layer^2, 2 eps V^2/(A_layer^2 S)
-    return fixed_rows + 2 * shape_.ogden_terms + static_cast<int>(shape_.wall.nodes.size()) + 3 * index;
-  }
-
  private:
   double& at(std::size_t slice, int row) {
     return rows_[slice / pack_width * rows_per_pack_ + row][slice % pack_width];
   }
 
   SliceShape shape_;
+  int layers_;
   std::size_t slices_, packs_, rows_per_pack_;
   std::vector<Pack> rows_;
 };

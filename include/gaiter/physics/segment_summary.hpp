@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-2-Clause
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "gaiter/model/result.hpp"
+#include "gaiter/physics/quadrature.hpp"
+
+namespace gaiter::physics {
+
+// What became of one slice, SI.
+struct SliceOutcome {
+  double leg_radius = 0;               // undeformed [m]
+  double reference_radius = 0;         // of the bandage: flat length / (2 pi) [m]
+  double pressure_rest_rigid = 0;      // [Pa]
+  double pressure_actuated_rigid = 0;  // [Pa]
+  double pressure_rest = 0;            // [Pa]
+  double pressure_actuated = 0;        // [Pa]
+  double radius_rest = 0;              // of the leg [m]
+  double radius_actuated = 0;          // of the leg [m]
+  double bandage_radius_rest = 0;      // inner face; larger than the leg's where they do not touch [m]
+  double bandage_radius_actuated = 0;  // the leg's where the bandage has none (pulled in) [m]
+  double actuation_pressure = 0;       // Eq. (8) at the actuated radius [Pa]
+  double electric_field = 0;           // [V/m]
+  int iterations = 0;
+  model::Status status = model::Status::contact;
+};
+
+// Segment result from its slices at the nodes of `rule` over the height. All numbers but the initial volume
+// and the rigid pressures are NaN where a slice has no trustworthy result, the field also where one is pulled
+// in. `wall_error`: relative quadrature error of the wall, which the error estimate adds to that of the
+// height.
+model::SegmentResult summarise(std::span<const SliceOutcome> slices, const Quadrature& rule,
+                               model::SliceRule kind, double height, double wall_error);
+
+// Relative error of the mean of `values` at the nodes of `rule`, from how fast their Legendre coefficients
+// (Gauss) or their end slopes (midpoint) fall. One value tells nothing: 0.
+double height_error(std::span<const double> values, const Quadrature& rule, model::SliceRule kind);
+
+}  // namespace gaiter::physics

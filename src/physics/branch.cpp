@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-2-Clause
+#include "gaiter/physics/branch.hpp"
+
+#include <cmath>
+
+#include "gaiter/physics/slice_kernel.hpp"
+
+namespace gaiter::physics {
+
+namespace {
+
+constexpr int deepest = 9;  // 63^-9 of a path: nothing finer can be told apart
+
+void spread(double from, double to, Pack& points) {
+  for (int i = 0; i < pack_width; ++i) points[i] = from + (to - from) * i / (pack_width - 1);
+  points[pack_width - 1] = to;
+}
+
+// First interval, on the way from `from` to `to`, in which balance(points, value, slope) becomes >= 0. It is
+// taken to be negative at `from`.
+template <typename Balance>
+std::optional<Interval> first_crossing(const Balance& balance, double from, double to, int depth = 0) {
+  Pack points, value, slope;
+  spread(from, to, points);
+  balance(points, value, slope);
+  if (depth == 0 && value[0] >= 0) return std::nullopt;
+  const double direction = to > from ? 1 : -1;
+  for (int i = 1; i < pack_width; ++i) {
+    const bool crosses = value[i] >= 0;
+    const bool approaches = direction * slope[i - 1] > 0 && direction * slope[i] < 0;
+    if (!crosses && !approaches) continue;
+    if (depth < (crosses ? 1 : deepest))
+      if (auto inner = first_crossing(balance, points[i - 1], points[i], depth + 1)) return inner;
+    if (crosses) return Interval{points[i - 1], points[i]};
+  }
+  return std::nullopt;
+}
+
+// The crossing inside an interval, to rounding.
+template <typename Balance>
+double section(const Balance& balance, Interval interval) {
+  for (int depth = 0; depth < deepest; ++depth) {
+    Pack points, value, slope;
+    spread(interval.from, interval.to, points);
+    balance(points, value, slope);
+    int i = 1;
+    while (i < pack_width - 1 && value[i] < 0) ++i;
+    interval = {points[i - 1], points[i]};
+  }
+  return interval.to;
+}
+
+}  // namespace
+
+std::optional<Interval> contact_interval(const SliceSystem& system, std::size_t slice, double highest,
+                                         bool ascending) {
+  const SliceSystem copies = system.replicate(slice);
+  // P = highest q^3 gives small pressures their share of the points. Going down, the leg has too much
+  // pressure.
+  const double sign = ascending ? 1 : -1;
+  const auto balance = [&](const Pack& q, Pack& value, Pack& slope) {
+    Pack pressure, strain, strain_slope, bandage, bandage_slope;
+    for (int i = 0; i < pack_width; ++i) pressure[i] = highest * q[i] * q[i] * q[i];
+    leg_strain(copies.shape(), copies.pack(0), pressure, strain, strain_slope);
+    bandage_pressure(copies.shape(), copies.pack(0), strain, bandage, bandage_slope);
+    for (int i = 0; i < pack_width; ++i) {
+      value[i] = sign * (pressure[i] - bandage[i]);
+      slope[i] = sign * (1 - bandage_slope[i] * strain_slope[i]) * 3 * highest * q[i] * q[i];
+    }
+  };
+  const auto found = first_crossing(balance, ascending ? 0 : 1, ascending ? 1 : 0);
+  if (!found) return std::nullopt;
+  return Interval{highest * std::pow(found->from, 3), highest * std::pow(found->to, 3)};
+}
+
+std::optional<double> floating_strain(const SliceSystem& system, std::size_t slice, double start) {
+  constexpr double largest_expansion = 9;  // logarithm of the radius over where it starts
+  const SliceSystem copies = system.replicate(slice);
+  const auto balance = [&](const Pack& expansion, Pack& value, Pack& slope) {
+    Pack strain;
+    for (int i = 0; i < pack_width; ++i) strain[i] = start - (1 - start) * std::expm1(expansion[i]);
+    bandage_pressure(copies.shape(), copies.pack(0), strain, value, slope);
+    for (int i = 0; i < pack_width; ++i) slope[i] *= -(1 - start) * std::exp(expansion[i]);
+  };
+  const auto found = first_crossing(balance, 0, largest_expansion);
+  if (!found) return std::nullopt;
+  return start - (1 - start) * std::expm1(section(balance, *found));
+}
+
+}  // namespace gaiter::physics

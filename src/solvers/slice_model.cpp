@@ -1,0 +1,355 @@
+// SPDX-License-Identifier: BSD-2-Clause
+#include "gaiter/solvers/slice_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gaiter/petsc/session.hpp"
+#include "gaiter/physics/branch.hpp"
+#include "gaiter/physics/segment_summary.hpp"
+#include "gaiter/physics/slice_kernel.hpp"
+#include "gaiter/solvers/slice_solver.hpp"
+
+namespace gaiter::solvers {
+
+namespace {
+
+using model::Status;
+using physics::Pack;
+using physics::pack_width;
+using physics::PackState;
+using physics::SliceOutcome;
+using physics::SliceShape;
+using physics::SliceSystem;
+
+constexpr double wall_tolerance =
+    1e-12;  // of the quadrature through the wall, where the points are chosen here
+constexpr int most_wall_points = 128;
+// f' of the scalar equation of a slice: 1 for a bandage that does not stiffen or soften with the leg's
+// radius. Below this there may be a limit point near by, and the equilibrium is searched for along the path.
+constexpr double doubtful_slope = 0.5;
+
+double voltage_of(const SegmentTask& task) {
+  return task.scene->bandage.modules[task.segment].voltage;
+}
+
+// A passive bandage of these terms presses harder the further it is stretched, so that there is one
+// equilibrium.
+bool stiffens(const model::Bandage& bandage) {
+  return std::all_of(bandage.ogden.begin(), bandage.ogden.end(), [](const model::OgdenTerm& term) {
+    return term.mu * term.alpha >= 0 && std::fabs(term.alpha) >= 2;
+  });
+}
+
+// The slices of this rank's tasks, and their solution on the way from rest to the actuated state.
+class SliceStudy {
+ public:
+  SliceStudy(MPI_Comm comm, std::span<const SegmentTask> tasks);
+  std::vector<model::SegmentResult> run();
+
+ private:
+  SliceShape common_shape() const;
+  void set_constants();
+  void rigid_pressures();
+  void rest(SliceSolver& solver);
+  void actuate(SliceSolver& solver);
+  void solve_doubtful(SliceSolver& solver, bool at_rest);
+  void record(bool at_rest);
+  void float_free(std::size_t slice);
+  void finish_actuated();
+  template <typename Action>
+  void each_slice(Action&& action);  // action(slice, task, its pack, its place in the pack)
+
+  MPI_Comm comm_;
+  std::span<const SegmentTask> tasks_;
+  std::vector<std::size_t> first_;  // first slice of each task, and the end
+  std::vector<physics::Quadrature> rules_;
+  bool energised_ = false;  // somewhere, on any rank
+  SliceSystem system_;
+  std::vector<PackState> states_;
+  std::vector<SliceOutcome> outcomes_;
+  std::vector<Pack> rest_pressure_;
+};
+
+int count_slices(std::span<const SegmentTask> tasks) {
+  int count = 0;
+  for (const SegmentTask& task : tasks) count += task.scene->discretisation.slice_count;
+  return count;
+}
+
+SliceStudy::SliceStudy(MPI_Comm comm, std::span<const SegmentTask> tasks)
+    : comm_(comm),
+      tasks_(tasks),
+      system_(common_shape(), count_slices(tasks)),
+      states_(system_.packs()),
+      outcomes_(system_.slices()),
+      rest_pressure_(system_.packs()) {
+  first_.push_back(0);
+  for (const SegmentTask& task : tasks_) {
+    const auto& how = task.scene->discretisation;
+    first_.push_back(first_.back() + how.slice_count);
+    rules_.push_back(physics::slice_quadrature(how.slice_rule, how.slice_count));
+  }
+  energised_ = !petsc::agree(comm_, std::all_of(tasks_.begin(), tasks_.end(), [](const SegmentTask& task) {
+                               return voltage_of(task) == 0;
+                             }));
+  set_constants();
+}
+
+// The number of wall points is the most that any module of any rank needs: results must not depend on the
+// ranks.
+SliceShape SliceStudy::common_shape() const {
+  SliceShape shape;
+  double points = 1;
+  for (const SegmentTask& task : tasks_) {
+    const model::Scene& scene = *task.scene;
+    const int asked = scene.discretisation.wall_points;
+    points =
+        std::max<double>(points, asked > 0 ? asked : wall_points_for(scene, task.segment, wall_tolerance));
+    shape.layers = std::max(shape.layers, voltage_of(task) != 0 ? scene.bandage.layers : 0);
+    shape.ogden_terms = static_cast<int>(scene.bandage.ogden.size());
+    shape.material = scene.leg.material;
+  }
+  shape.wall = physics::gauss_legendre(static_cast<int>(petsc::largest(comm_, points)));
+  return shape;
+}
+
+template <typename Action>
+void SliceStudy::each_slice(Action&& action) {
+  for (std::size_t t = 0; t < tasks_.size(); ++t)
+    for (std::size_t slice = first_[t]; slice < first_[t + 1]; ++slice)
+      action(slice, t, slice / pack_width, static_cast<int>(slice % pack_width));
+}
+
+void SliceStudy::set_constants() {
+  each_slice([&](std::size_t slice, std::size_t t, std::size_t, int) {
+    const model::Scene& scene = *tasks_[t].scene;
+    const model::Segment& segment = scene.leg.segments[tasks_[t].segment];
+    const model::Module& module = scene.bandage.modules[tasks_[t].segment];
+    const double height = rules_[t].nodes[slice - first_[t]];
+    const double radius = segment.lower_radius + height * (segment.upper_radius - segment.lower_radius);
+    const physics::Wall wall = physics::reference_wall(scene.bandage, module, segment.mean_radius(), radius);
+    system_.set(slice, scene.leg, segment, scene.bandage, wall, radius, module.voltage);
+    outcomes_[slice].leg_radius = radius;
+    outcomes_[slice].reference_radius =
+        module.length > 0 ? module.length / (2 * M_PI) : segment.mean_radius() / module.stretch;
+  });
+}
+
+// On a leg that does not give way; negative pressures mean no contact.
+void SliceStudy::rigid_pressures() {
+  for (bool on : {false, true}) {
+    system_.energise(on);
+    Pack strain{}, pressure, slope;
+    each_slice([&](std::size_t slice, std::size_t, std::size_t pack, int place) {
+      if (place == 0) physics::bandage_pressure(system_.shape(), system_.pack(pack), strain, pressure, slope);
+      const double pascal =
+          std::max(0.0, pressure[place]) * system_.constant(slice, SliceShape::pressure_scale);
+      (on ? outcomes_[slice].pressure_actuated_rigid : outcomes_[slice].pressure_rest_rigid) = pascal;
+    });
+  }
+}
+
+void SliceStudy::rest(SliceSolver& solver) {
+  system_.energise(false);
+  const bool newton =
+      tasks_.empty() || tasks_[0].scene->discretisation.slice_solver == model::SliceSolver::newton;
+  Pack unused;
+  for (std::size_t k = 0; k < system_.packs(); ++k)
+    if (newton)
+      physics::start_at_rest(system_.shape(), system_.pack(k), states_[k], unused);
+    else
+      physics::start_fixed_point(true, states_[k]);
+  solver.solve(system_, states_);
+  if (newton) solve_doubtful(solver, true);
+  record(true);
+}
+
+void SliceStudy::actuate(SliceSolver& solver) {
+  system_.energise(true);
+  const bool newton =
+      tasks_.empty() || tasks_[0].scene->discretisation.slice_solver == model::SliceSolver::newton;
+  for (std::size_t k = 0; k < system_.packs(); ++k) {
+    rest_pressure_[k] = states_[k].pressure;
+    newton ? physics::start_actuated(states_[k]) : physics::start_fixed_point(false, states_[k]);
+  }
+  each_slice([&](std::size_t slice, std::size_t t, std::size_t pack, int place) {
+    if (voltage_of(tasks_[t]) == 0 || outcomes_[slice].status >= Status::no_equilibrium)
+      states_[pack].open[place] = 0;
+  });
+  solver.solve(system_, states_);
+  if (newton) solve_doubtful(solver, false);
+  record(false);
+}
+
+// Slices whose equation was, somewhere on the way, too flat for Newton's root to be surely the one that the
+// bandage reaches: find the interval of that one, and solve again inside it.
+void SliceStudy::solve_doubtful(SliceSolver& solver, bool at_rest) {
+  double reopened = 0;
+  each_slice([&](std::size_t slice, std::size_t t, std::size_t pack, int place) {
+    PackState& state = states_[pack];
+    const bool sure = at_rest && stiffens(tasks_[t].scene->bandage);
+    const bool soft = !stiffens(tasks_[t].scene->bandage) || state.smallest_slope[place] < doubtful_slope;
+    const double highest =
+        at_rest ? system_.constant(slice, SliceShape::pressure_limit) : rest_pressure_[pack][place];
+    if (sure || !soft || state.iterations[place] == 0 || !(highest > 0)) return;
+    const auto found = physics::contact_interval(system_, slice, highest, at_rest);
+    state.open[place] = found ? 1 : 0;
+    if (found) {
+      state.low[place] = std::min(found->from, found->to);
+      state.high[place] = std::max(found->from, found->to);
+      state.pressure[place] = 0.5 * (found->from + found->to);
+      ++reopened;
+    } else {
+      state.pressure[place] = 0;
+    }
+  });
+  if (petsc::sum(comm_, reopened) == 0) return;
+  // The iterates start on the leg's law.
+  for (std::size_t k = 0; k < system_.packs(); ++k) {
+    Pack strain, slope;
+    physics::leg_strain(system_.shape(), system_.pack(k), states_[k].pressure, strain, slope);
+    for (int i = 0; i < pack_width; ++i)
+      if (states_[k].open[i] > 0 || states_[k].pressure[i] == 0) states_[k].strain[i] = strain[i];
+  }
+  solver.solve(system_, states_);
+}
+
+// States of the slices to outcomes.
+void SliceStudy::record(bool at_rest) {
+  each_slice([&](std::size_t slice, std::size_t t, std::size_t pack, int place) {
+    SliceOutcome& outcome = outcomes_[slice];
+    const PackState& state = states_[pack];
+    const double pressure = state.pressure[place] * system_.constant(slice, SliceShape::pressure_scale);
+    const double radius = outcome.leg_radius * (1 - state.strain[place]);
+    const double touching = outcome.leg_radius / system_.constant(slice, SliceShape::leg_radius);  // A
+    outcome.iterations = std::max(outcome.iterations, static_cast<int>(state.iterations[place]));
+    if (state.open[place] > 0 || state.failed[place] > 0)
+      outcome.status = std::max(outcome.status, Status::diverged);
+    if (pressure > tasks_[t].scene->leg.data_limit &&
+        tasks_[t].scene->leg.material == model::LegMaterial::compliance)
+      outcome.status = std::max(outcome.status, Status::extrapolated);
+    if (at_rest) {
+      outcome.pressure_rest = pressure;
+      outcome.radius_rest = radius;
+      outcome.bandage_radius_rest = pressure > 0 ? radius : std::max(radius, touching);
+      if (pressure == 0) outcome.status = std::max(outcome.status, Status::slack);
+    }
+    outcome.pressure_actuated = pressure;
+    outcome.radius_actuated = radius;
+    outcome.bandage_radius_actuated = pressure > 0 ? radius : std::max(radius, touching);
+  });
+}
+
+// A bandage under voltage that does not touch the leg: its own equilibrium, if it has one.
+void SliceStudy::float_free(std::size_t slice) {
+  SliceOutcome& outcome = outcomes_[slice];
+  const double start = 1 - outcome.bandage_radius_actuated / outcome.leg_radius;
+  const auto strain = physics::floating_strain(system_, slice, start);
+  const Status found = outcome.pressure_rest > 0 ? Status::lifted : Status::slack;
+  outcome.status = std::max(outcome.status, strain ? found : Status::pulled_in);
+  if (strain) outcome.bandage_radius_actuated = outcome.leg_radius * (1 - *strain);
+}
+
+// What needs the actuated radius of the bandage: lift-off, actuation pressure, field.
+void SliceStudy::finish_actuated() {
+  Pack strain, pressure, slope, field;
+  each_slice([&](std::size_t slice, std::size_t t, std::size_t pack, int place) {
+    SliceOutcome& outcome = outcomes_[slice];
+    if (place == 0 || slice == 0) {
+      for (int i = 0; i < pack_width; ++i) strain[i] = states_[pack].strain[i];
+      for (int i = 0; i < pack_width; ++i) {
+        const std::size_t other = pack * pack_width + i;
+        if (other >= outcomes_.size() || outcomes_[other].status >= Status::no_equilibrium) continue;
+        const std::size_t owner = std::upper_bound(first_.begin(), first_.end(), other) - first_.begin() - 1;
+        if (voltage_of(tasks_[owner]) != 0 && outcomes_[other].pressure_actuated == 0) float_free(other);
+        strain[i] = 1 - outcomes_[other].bandage_radius_actuated / outcomes_[other].leg_radius;
+      }
+      physics::actuation_pressure(system_.shape(), system_.pack(pack), strain, pressure, slope);
+      physics::largest_field(system_.shape(), system_.pack(pack), strain, field);
+    }
+    const double inner = outcome.leg_radius / system_.constant(slice, SliceShape::leg_radius);
+    outcome.actuation_pressure = pressure[place] * system_.constant(slice, SliceShape::pressure_scale);
+    outcome.electric_field = field[place] * voltage_of(tasks_[t]) / inner;
+  });
+}
+
+std::vector<model::SegmentResult> SliceStudy::run() {
+  rigid_pressures();
+  const model::Scene* scene = tasks_.empty() ? nullptr : tasks_[0].scene;
+  const bool rigid = petsc::largest(comm_, scene && (scene->fidelity == model::Fidelity::rigid ||
+                                                     scene->leg.model == model::LegModel::rigid)) > 0;
+  if (rigid) {
+    each_slice([&](std::size_t slice, std::size_t, std::size_t pack, int place) {
+      SliceOutcome& outcome = outcomes_[slice];
+      states_[pack].strain[place] = 0;
+      const double touching = outcome.leg_radius / system_.constant(slice, SliceShape::leg_radius);
+      outcome.pressure_rest = outcome.pressure_rest_rigid;
+      outcome.pressure_actuated = outcome.pressure_actuated_rigid;
+      outcome.radius_rest = outcome.radius_actuated = outcome.leg_radius;
+      outcome.bandage_radius_rest = outcome.bandage_radius_actuated =
+          outcome.pressure_rest > 0 ? outcome.leg_radius : std::max(outcome.leg_radius, touching);
+      if (outcome.pressure_rest == 0) outcome.status = Status::slack;
+    });
+  } else {
+    const double fixed_point = petsc::largest(
+        comm_, scene && scene->discretisation.slice_solver == model::SliceSolver::fixed_point ? 1 : 0);
+    const double tolerance = petsc::largest(comm_, scene ? scene->discretisation.fixed_point_tolerance : 0);
+    SliceSolver solver(comm_, system_.packs(),
+                       fixed_point > 0 ? model::SliceSolver::fixed_point : model::SliceSolver::newton,
+                       tolerance);
+    rest(solver);
+    if (energised_) actuate(solver);
+  }
+  system_.energise(true);
+  if (energised_) finish_actuated();
+
+  std::vector<model::SegmentResult> results;
+  for (std::size_t t = 0; t < tasks_.size(); ++t) {
+    const model::Scene& own = *tasks_[t].scene;
+    const int points = static_cast<int>(system_.shape().wall.nodes.size());
+    results.push_back(physics::summarise(std::span(outcomes_).subspan(first_[t], first_[t + 1] - first_[t]),
+                                         rules_[t], own.discretisation.slice_rule,
+                                         own.leg.segments[tasks_[t].segment].height,
+                                         wall_error(own, tasks_[t].segment, points)));
+    results.back().fidelity = rigid ? model::Fidelity::rigid : model::Fidelity::slice;
+  }
+  return results;
+}
+
+}  // namespace
+
+double wall_error(const model::Scene& scene, std::size_t segment, int points) {
+  const model::Segment& leg = scene.leg.segments[segment];
+  const double widest = std::max(leg.lower_radius, leg.upper_radius);
+  const physics::Wall wall =
+      physics::reference_wall(scene.bandage, scene.bandage.modules[segment], leg.mean_radius(), widest);
+  // Over the wall, whose logarithmic thickness is that of its area, lambda^(alpha - 2) changes by this
+  // exponent.
+  const double inner = wall.inner_radius, outer = inner + wall.thickness;
+  const double area = wall.thickness * (inner + outer) / (inner * inner);
+  const double log_area = std::log1p(area);
+  const double swell = wall.gap * (2 * inner + wall.gap);
+  const double stretch_span =
+      0.5 * std::fabs(std::log1p(swell / (inner * inner)) - std::log1p(swell / (outer * outer)));
+  double steepest = 0;
+  for (const auto& term : scene.bandage.ogden) steepest = std::max(steepest, std::fabs(term.alpha));
+  const double exponential =
+      physics::gauss_error_of_exponential(points, (steepest + 2) * stretch_span + 1e-3 * log_area);
+  // 1/lambda^2 has poles at a distance of pi / log_area from the wall: the ellipse of convergence of Gauss.
+  const double pole = 2 * M_PI / log_area;
+  const double ellipse = pole + std::hypot(1.0, pole);
+  return exponential + std::pow(ellipse, -2.0 * points);
+}
+
+int wall_points_for(const model::Scene& scene, std::size_t segment, double tolerance) {
+  int points = 2;
+  while (points < most_wall_points && wall_error(scene, segment, points) > tolerance) ++points;
+  return points;
+}
+
+std::vector<model::SegmentResult> solve_segments(MPI_Comm comm, std::span<const SegmentTask> tasks) {
+  return SliceStudy(comm, tasks).run();
+}
+
+}  // namespace gaiter::solvers
