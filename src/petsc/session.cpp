@@ -5,6 +5,7 @@
 
 #include "gaiter/base/error.hpp"
 #include "gaiter/petsc/check.hpp"
+#include "gaiter/petsc/error_capture.hpp"
 
 namespace gaiter::petsc {
 
@@ -43,9 +44,11 @@ void Session::insert_options_file(const std::string& path) {
       rank(PETSC_COMM_WORLD) != 0 || std::ifstream(path).peek() != std::ifstream::traits_type::eof();
   if (!agree(PETSC_COMM_WORLD, readable))
     throw base::InputError("-options_file '" + path + "': the file cannot be read, or is empty");
-  check(PetscPushErrorHandler(PetscReturnErrorHandler, nullptr));
-  const PetscErrorCode code = PetscOptionsInsertFileYAML(PETSC_COMM_WORLD, nullptr, path.c_str(), PETSC_TRUE);
-  check(PetscPopErrorHandler());
+  PetscErrorCode code = PETSC_SUCCESS;
+  {
+    ErrorCapture quiet;
+    code = PetscOptionsInsertFileYAML(PETSC_COMM_WORLD, nullptr, path.c_str(), PETSC_TRUE);
+  }
   if (!agree(PETSC_COMM_WORLD, code == PETSC_SUCCESS))
     throw base::InputError("-options_file '" + path +
                            "': not a YAML file of options (maps of values and lists of values)");

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-2-Clause
+#pragma once
+
+#include "gaiter/petsc/session.hpp"
+#include "gaiter/studies/command_line.hpp"
+
+namespace gaiter::studies {
+
+// Exit codes of the program.
+enum ExitCode { success = 0, wrong_input = 2, untrustworthy = 3, internal_failure = 70 };
+
+// Runs one command on all ranks, prints on rank 0 and writes the archive. Throws base::InputError before
+// anything is written, and base::InternalError. @note Collective; the session outlives the call.
+ExitCode run_program(petsc::Session& session, const CommandLine& line);
+
+}  // namespace gaiter::studies

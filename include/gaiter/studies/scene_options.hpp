@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-2-Clause
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "gaiter/model/scene.hpp"
+#include "gaiter/studies/designs.hpp"
+#include "gaiter/studies/option_names.hpp"
+#include "gaiter/studies/option_table.hpp"
+
+namespace gaiter::studies {
+
+// What the user asks for, read from the options and checked.
+struct Request {
+  model::Scene scene;  // of a sweep: its first design
+  std::string output;  // file name of the archive
+  bool dry_run = false;
+  Comparison comparison = Comparison::none;
+  std::vector<SweepAxis> axes;       // sorted by name; empty for solve
+  std::vector<std::string> unknown;  // given, but not ours: PETSc's, or misspelt
+  std::string text;  // YAML that, read as -options_file, gives this request again; without output and dry_run
+};
+
+// Reads the options given, name without dash -> text. Throws InputError; unknown names alone are returned,
+// since some of them are PETSc's. Names do not depend on case, as PETSc's do not. The same on every rank.
+Request parse_request(Command command, const std::map<std::string, std::string>& given);
+
+// What relates several values of one scene: wall against reference radius, positive shear modulus,
+// compliance. Throws InputError that names the option and the values.
+void check_scene(const model::Scene& scene);
+
+}  // namespace gaiter::studies

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-2-Clause
+#include "gaiter/archive/schema.hpp"
+
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+
+namespace gaiter::archive {
+namespace {
+
+using Row = model::SegmentResult;
+
+constexpr std::array table{
+    Column{"pressure_rest", "Pa",
+           "interface pressure between bandage and leg at rest, mean over the height of the segment",
+           &Row::pressure_rest},
+    Column{"pressure_actuated", "Pa",
+           "interface pressure between bandage and leg under voltage, mean over the height of the segment",
+           &Row::pressure_actuated},
+    Column{"pressure_rest_rigid", "Pa",
+           "interface pressure at rest on a leg that does not give way, mean over the height of the segment",
+           &Row::pressure_rest_rigid},
+    Column{"pressure_actuated_rigid", "Pa",
+           "interface pressure under voltage on a leg that does not give way, mean over the height of the "
+           "segment",
+           &Row::pressure_actuated_rigid},
+    Column{
+        "pressure_rest_area_mean", "Pa",
+        "normal force of the bandage at rest over the deformed area of its whole inner face, parts that do "
+        "not touch the leg included",
+        &Row::pressure_rest_area_mean},
+    Column{"pressure_actuated_area_mean", "Pa",
+           "normal force of the bandage under voltage over the deformed area of its whole inner face, parts "
+           "that do not touch the leg included",
+           &Row::pressure_actuated_area_mean},
+    Column{"actuation_drop", "Pa",
+           "fall of the interface pressure by the voltage, pressure_rest minus pressure_actuated",
+           &Row::actuation_drop},
+    Column{
+        "actuation_pressure", "Pa",
+        "pressure by which the voltage relieves the bandage at its actuated radius, mean over the height of "
+        "the segment",
+        &Row::actuation_pressure},
+    Column{"volume_initial", "m3", "volume of the segment of leg without bandage", &Row::volume_initial},
+    Column{"volume_rest", "m3", "volume of the segment of leg under the bandage at rest", &Row::volume_rest},
+    Column{"volume_actuated", "m3", "volume of the segment of leg under the bandage with voltage",
+           &Row::volume_actuated},
+    Column{"volume_change", "1",
+           "part of its initial volume that the segment of leg has lost under the bandage with voltage",
+           &Row::volume_change},
+    Column{"radius_actuated", "m", "radius of the leg under voltage, mean over the height of the segment",
+           &Row::radius_actuated},
+    Column{"stretch_actual", "1",
+           "stretch of the bandage at rest, once the leg has given way, mean over the height of the segment",
+           &Row::stretch_actual},
+    Column{"electric_field_max", "V m-1", "largest true electric field in the wall of the bandage",
+           &Row::electric_field_max},
+    Column{"error_estimate", "1", "estimated relative error of the pressures", &Row::error_estimate},
+    Column{"iterations", "1", "iterations of the solver, the most that any slice of the segment took",
+           &Row::iterations},
+    Column{"status", "", "state of the bandage on the segment, the gravest of its slices", &Row::status},
+    Column{"fidelity", "", "model that gave the results of the segment", &Row::fidelity},
+};
+
+constexpr std::array status_words{"contact",   "slack",          "lifted",  "extrapolated",
+                                  "pulled_in", "no_equilibrium", "diverged"};
+static_assert(status_words.size() == static_cast<std::size_t>(model::Status::diverged) + 1);
+
+constexpr std::array fidelity_words{"rigid", "slice"};
+static_assert(fidelity_words.size() == static_cast<std::size_t>(model::Fidelity::slice) + 1);
+
+std::int8_t stored(model::Status value) {
+  return static_cast<std::int8_t>(value);
+}
+std::int8_t stored(model::Fidelity value) {
+  return static_cast<std::int8_t>(value);
+}
+std::int32_t stored(int value) {
+  return value;
+}
+double stored(double value) {
+  return value;
+}
+
+}  // namespace
+
+std::span<const Column> columns() {
+  return table;
+}
+
+Stored stored_as(const Column& column) {
+  return std::visit(
+      [](auto member) {
+        using Value = decltype(stored(Row{}.*member));
+        if constexpr (std::is_same_v<Value, double>) {
+          return Stored::float64;
+        } else if constexpr (std::is_same_v<Value, std::int32_t>) {
+          return Stored::int32;
+        } else {
+          return Stored::int8;
+        }
+      },
+      column.field);
+}
+
+std::size_t bytes_of(Stored stored) {
+  switch (stored) {
+    case Stored::float64:
+      return 8;
+    case Stored::int32:
+      return 4;
+    case Stored::int8:
+      return 1;
+  }
+  return 0;
+}
+
+std::vector<std::string_view> flag_words(const Column& column) {
+  if (std::holds_alternative<model::Status Row::*>(column.field)) {
+    return {status_words.begin(), status_words.end()};
+  }
+  if (std::holds_alternative<model::Fidelity Row::*>(column.field)) {
+    return {fidelity_words.begin(), fidelity_words.end()};
+  }
+  return {};
+}
+
+std::string_view word(model::Status status) {
+  return status_words.at(static_cast<std::size_t>(status));
+}
+
+std::string_view word(model::Fidelity fidelity) {
+  return fidelity_words.at(static_cast<std::size_t>(fidelity));
+}
+
+void gather(const Column& column, std::span<const Row> rows, std::byte* out) {
+  std::visit(
+      [&](auto member) {
+        for (const Row& row : rows) {
+          const auto value = stored(row.*member);
+          std::memcpy(out, &value, sizeof value);
+          out += sizeof value;
+        }
+      },
+      column.field);
+}
+
+}  // namespace gaiter::archive

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-2-Clause
+#include "gaiter/studies/option_names.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "gaiter/base/text.hpp"
+#include "gaiter/studies/option_table.hpp"
+#include "gaiter/studies/option_values.hpp"
+
+namespace gaiter::studies {
+
+using base::InputError;
+
+namespace {
+
+// The words that follow leg_ and bandage_ in the table. A segment of that name would be mistaken for an
+// option.
+std::set<std::string, std::less<>> reserved_words() {
+  std::set<std::string, std::less<>> words;
+  for (const Option& option : option_table()) {
+    for (const std::string_view prefix : {"leg_", "bandage_"}) {
+      if (!option.name.starts_with(prefix)) continue;
+      std::string_view rest = option.name.substr(prefix.size());
+      if (rest.starts_with("<s>_")) rest.remove_prefix(4);
+      words.emplace(rest.substr(0, rest.find('_')));
+    }
+  }
+  return words;
+}
+
+}  // namespace
+
+std::vector<model::Segment> parse_segments(std::string_view name, std::string_view text) {
+  const Option& entry = option("leg_segments");
+  const auto reserved = reserved_words();
+  constexpr std::string_view letters = "abcdefghijklmnopqrstuvwxyz0123456789_";
+  std::vector<model::Segment> segments;
+  std::set<std::string> seen;
+  for (const std::string_view item : base::split(text)) {
+    const std::string word = base::lower(item);
+    if (word.empty()) throw value_error(entry, name, text, "a name is missing");
+    if (word.find_first_not_of(letters) != std::string::npos) {
+      throw value_error(entry, name, text, fmt::format("'{}' is no name", item));
+    }
+    if (reserved.contains(word)) {
+      throw value_error(entry, name, text, fmt::format("'{}' is a word of the option names", item));
+    }
+    if (!seen.insert(word).second) {
+      throw value_error(entry, name, text, fmt::format("'{}' is there twice", item));
+    }
+    segments.emplace_back().name = item;
+  }
+  return segments;
+}
+
+std::string nearest_option(std::string_view name, std::span<const model::Segment> segments) {
+  std::vector<std::string> candidates;
+  const auto add = [&](const Option& entry, std::string_view segment) {
+    candidates.push_back(name_for(entry, segment));
+    if (entry.sweepable) candidates.push_back("sweep_" + candidates.back());
+  };
+  for (const Option& entry : option_table()) {
+    if (entry.name == "sweep_<option>") continue;
+    if (entry.scope != Scope::one_segment) {
+      add(entry, "");
+      continue;
+    }
+    for (const model::Segment& segment : segments) add(entry, segment.name);
+  }
+  std::vector<std::string> lower;
+  for (const std::string& candidate : candidates) lower.push_back(base::lower(candidate));
+  const std::string best = base::nearest(base::lower(name), lower);
+  if (best.empty()) return best;
+  return candidates[static_cast<std::size_t>(std::ranges::find(lower, best) - lower.begin())];
+}
+
+base::InputError unknown_option(std::string_view name, std::span<const model::Segment> segments) {
+  const std::string best = nearest_option(name, segments);
+  if (best.empty()) return InputError(fmt::format("unknown option -{}; -help lists all", name));
+  return InputError(fmt::format("unknown option -{}; did you mean -{}?", name, best));
+}
+
+}  // namespace gaiter::studies

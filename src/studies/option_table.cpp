@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: BSD-2-Clause
+#include "gaiter/studies/option_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace gaiter::studies {
+
+namespace {
+
+using model::Scene;
+using Values = std::span<const double>;
+
+// The ranges keep out slips of unit and sign; they admit every extreme the solver is tested at.
+constexpr Range radii{.low = 1e-4, .high = 10};
+constexpr Range stretches{.low = 0, .high = 20, .low_open = true};
+constexpr Range voltages{.low = 0, .high = 1e9};
+constexpr Range positive{.low = 0, .low_open = true, .high_open = true};
+constexpr Range positive_or_infinite{.low = 0, .low_open = true};
+
+std::vector<Option> make_table() {
+  return {
+      {.name = "bandage_<s>_length",
+       .scope = Scope::one_segment,
+       .components = {{.unit = "m", .range = {.low = 1e-6, .high = 1000}}},
+       .example = "11.3 cm",
+       .doc = "Flat length L of the module, bent into a tube; in place of the stretch.",
+       .sweepable = true,
+       .set = [](Scene& s, std::size_t i, Values v) { s.bandage.modules[i].length = v[0]; }},
+      {.name = "bandage_<s>_stretch",
+       .scope = Scope::one_segment,
+       .components = {{.range = stretches}},
+       .example = "2.2",
+       .doc = "Stretch of the module on one segment; wins over bandage_stretch.",
+       .sweepable = true,
+       .set = [](Scene& s, std::size_t i, Values v) { s.bandage.modules[i].stretch = v[0]; }},
+      {.name = "bandage_<s>_voltage",
+       .scope = Scope::one_segment,
+       .components = {{.unit = "V", .range = voltages}},
+       .example = "11.3 kV",
+       .doc = "Voltage of the module on one segment; wins over voltage.",
+       .sweepable = true,
+       .set = [](Scene& s, std::size_t i, Values v) { s.bandage.modules[i].voltage = v[0]; }},
+      {.name = "bandage_breakdown_field",
+       .components = {{.unit = "V m-1", .range = positive_or_infinite}},
+       .default_text = "inf",
+       .doc = "True electric field at which the elastomer breaks down.",
+       .sweepable = true,
+       .set = [](Scene& s, std::size_t, Values v) { s.bandage.breakdown_field = v[0]; }},
+      {.name = "bandage_layers",
+       .kind = Kind::count,
+       .components = {{.range = {.low = 1, .high = 1000}}},
+       .default_text = "1",
+       .doc = "Layers of equal reference thickness, electrically in parallel.",
+       .sweepable = true,
+       .set = [](Scene& s, std::size_t, Values v) { s.bandage.layers = static_cast<int>(v[0]); }},
+      {.name = "bandage_length_at",
+       .kind = Kind::choice,
+       .choices = {"outer", "middle", "inner"},
+       .default_text = "outer",
+       .doc = "Radius of the wall that the flat length and the stretch refer to.",
+       .set = [](Scene& s, std::size_t,
+                 Values v) { s.bandage.length_at = static_cast<model::LengthAt>(static_cast<int>(v[0])); }},
+      {.name = "bandage_ogden_alpha",
+       .count = {1, 8},
+       .components = {{.range = {.low = 0, .high = 50, .low_open = true, .magnitude = true}}},
+       .example = "3.507, 12.147",
+       .doc = "Ogden exponents, one a term of W = sum mu/alpha (l1^alpha + l2^alpha + l3^alpha - 3).",
+       .set =
+           [](Scene& s, std::size_t, Values v) {
+             s.bandage.ogden.resize(v.size());
+             for (std::size_t i = 0; i < v.size(); ++i) s.bandage.ogden[i].alpha = v[i];
+           }},
+      {.name = "bandage_ogden_mu",
+       .count = {1, 8},
+       .components = {{.unit = "Pa", .range = {.low = 1e-2, .high = 1e12, .magnitude = true}}},
+       .example = "21.193 kPa, 10.514 Pa",
+       .doc = "Ogden moduli, one a term; the initial shear modulus, half the sum of mu alpha, is positive.",
+       .set =
+           [](Scene& s, std::size_t, Values v) {
+             s.bandage.ogden.resize(v.size());
+             for (std::size_t i = 0; i < v.size(); ++i) s.bandage.ogden[i].mu = v[i];
+           }},
+      {.name = "bandage_permittivity",
+       .components = {{.range = {.low = 1, .high = 1e6}}},
+       .default_text = "1",
+       .doc = "Relative permittivity of the elastomer.",
+       .sweepable = true,
+       .set = [](Scene& s, std::size_t, Values v) { s.bandage.permittivity = v[0]; }},
+      {.name = "bandage_stretch",
+       .scope = Scope::every_segment,
+       .components = {{.range = stretches}},
+       .example = "2.2",
+       .doc = "Undeformed mean leg radius over the bandage's reference radius, of all modules.",
+       .sweepable = true,
+       .yields_to = {"bandage_<s>_length", "bandage_<s>_stretch"},
+       .set = [](Scene& s, std::size_t i, Values v) { s.bandage.modules[i].stretch = v[0]; }},
+      {.name = "bandage_thickness",
+       .components = {{.unit = "m", .range = {.low = 1e-10, .high = 1}}},
+       .default_text = "1 mm",
+       .doc = "Undeformed wall; leaves a hole in the reference tube.",
+       .sweepable = true,
+       .set = [](Scene& s, std::size_t, Values v) { s.bandage.thickness = v[0]; }},
+      {.name = "comparison",
+       .kind = Kind::choice,
+       .scope = Scope::program,
+       .choices = {"none", "paper"},
+       .default_text = "none",
+       .doc = "Print the paper's printed results beside the computed ones."},
+      {.name = "dry_run",
+       .kind = Kind::flag,
+       .scope = Scope::program,
+       .default_text = "false",
+       .doc = "Print the resolved scene, every default included, and stop."},
+      {.name = "fidelity",
+       .kind = Kind::choice,
+       .choices = {"rigid", "slice"},
+       .default_text = "slice",
+       .doc =
+           "How much is modelled: a leg that does not give way, or slices that each find their equilibrium.",
+       .set = [](Scene& s, std::size_t,
+                 Values v) { s.fidelity = static_cast<model::Fidelity>(static_cast<int>(v[0])); }},
+      {.name = "help",
+       .kind = Kind::text,
+       .scope = Scope::program,
+       .format = "nothing, or markdown",
+       .example = "markdown",
+       .doc = "List commands and options, and stop."},
+      {.name = "leg_<s>_compliance",
+       .scope = Scope::one_segment,
+       .count = {4, 4},
+       .components = {{"a", "1", {.low = 0, .high = 1, .low_open = true, .high_open = true}},
+                      {"b", "Pa-1", positive},
+                      {"c", "1", {.high = 0, .low_open = true}},
+                      {"d", "Pa-1", {.high = 0, .low_open = true, .high_open = true}}},
+       .example = "0.013392, 7.898e-5, -0.016, -0.001137",
+       .doc = "Constants a,b,c,d of the radial strain a exp(b P) + c exp(d P); a + c is above -1.",
+       .set =
+           [](Scene& s, std::size_t i, Values v) {
+             s.leg.segments[i].compliance = {v[0], v[1], v[2], v[3]};
+           }},
+      {.name = "leg_<s>_height",
+       .scope = Scope::one_segment,
+       .components = {{.unit = "m", .range = {.low = 1e-4, .high = 10}}},
+       .example = "35 mm",
+       .doc = "Height of the segment along the leg.",
+       .sweepable = true,
+       .set = [](Scene& s, std::size_t i, Values v) { s.leg.segments[i].height = v[0]; }},
+      {.name = "leg_<s>_radius",
+       .scope = Scope::one_segment,
+       .count = {2, 2},
+       .components = {{.unit = "m", .range = radii}},
+       .example = "35.85 mm, 43.37 mm",
+       .doc = "Undeformed radii of the segment, at the end nearer the ankle and at the end nearer the knee.",
+       .set =
+           [](Scene& s, std::size_t i, Values v) {
+             s.leg.segments[i].lower_radius = v[0];
+             s.leg.segments[i].upper_radius = v[1];
+           }},
+      {.name = "leg_compliance_data_limit",
+       .components = {{.unit = "Pa", .range = positive_or_infinite}},
+       .default_text = "7 kPa",
+       .doc = "Pressure up to which the compliance was measured; results beyond are marked extrapolated.",
+       .sweepable = true,
+       .set = [](Scene& s, std::size_t, Values v) { s.leg.data_limit = v[0]; }},
+      {.name = "leg_compliance_variant",
+       .kind = Kind::choice,
+       .choices = {"published", "anchored"},
+       .default_text = "published",
+       .doc = "Strain law as published, or anchored: c = -a, so that no pressure means no strain.",
+       .set =
+           [](Scene& s, std::size_t, Values v) {
+             s.leg.variant = static_cast<model::ComplianceVariant>(static_cast<int>(v[0]));
+           }},
+      {.name = "leg_material",
+       .kind = Kind::choice,
+       .choices = {"compliance", "neo_hookean"},
+       .default_text = "compliance",
+       .doc = "Law of the compliant leg: the segments' compliance, or leg_young and leg_poisson.",
+       .set = [](Scene& s, std::size_t,
+                 Values v) { s.leg.material = static_cast<model::LegMaterial>(static_cast<int>(v[0])); }},
+      {.name = "leg_model",
+       .kind = Kind::choice,
+       .choices = {"compliant", "rigid"},
+       .default_text = "compliant",
+       .doc = "Whether the leg gives way.",
+       .set = [](Scene& s, std::size_t,
+                 Values v) { s.leg.model = static_cast<model::LegModel>(static_cast<int>(v[0])); }},
+      {.name = "leg_poisson",
+       .components = {{.range = {.low = 0, .high = 0.5, .high_open = true}}},
+       .default_text = "0.4",
+       .doc = "Poisson's ratio of the neo-Hookean leg.",
+       .sweepable = true,
+       .set = [](Scene& s, std::size_t, Values v) { s.leg.poisson_ratio = v[0]; }},
+      {.name = "leg_segments",
+       .kind = Kind::text,
+       .scope = Scope::program,
+       .count = {1, 100000},
+       .format = "names of letters, digits and _, ankle up",
+       .example = "r6,r5,r4,r3,r2,r1",
+       .doc = "Names of the leg's segments; each one has a bandage module."},
+      {.name = "leg_young",
+       .components = {{.unit = "Pa", .range = {.low = 1, .high = 1e13}}},
+       .default_text = "80 kPa",
+       .doc = "Young's modulus of the neo-Hookean leg.",
+       .sweepable = true,
+       .set = [](Scene& s, std::size_t, Values v) { s.leg.young_modulus = v[0]; }},
+      {.name = "options_file",
+       .kind = Kind::text,
+       .scope = Scope::program,
+       .format = "a YAML file",
+       .example = "options/scenes/paper.yaml",
+       .doc = "Options from a file, nested keys joined by _; the command line wins."},
+      {.name = "output",
+       .kind = Kind::text,
+       .scope = Scope::program,
+       .format = "a file name",
+       .default_text = "gaiter.h5",
+       .doc = "Archive to write (HDF5)."},
+      {.name = "slice_count",
+       .kind = Kind::count,
+       .components = {{.range = {.low = 1, .high = 100000}}},
+       .default_text = "6",
+       .doc = "Slices a segment.",
+       .set = [](Scene& s, std::size_t, Values v) { s.discretisation.slice_count = static_cast<int>(v[0]); }},
+      {.name = "slice_fixed_point_tolerance",
+       .components = {{.range = {.low = 1e-16, .high = 0.1}}},
+       .default_text = "1e-4",
+       .doc = "The fixed point stops once the radius changes by less than this part of the undeformed one.",
+       .set = [](Scene& s, std::size_t, Values v) { s.discretisation.fixed_point_tolerance = v[0]; }},
+      {.name = "slice_rule",
+       .kind = Kind::choice,
+       .choices = {"gauss", "midpoint"},
+       .default_text = "gauss",
+       .doc = "Where the slices of a segment sit and what they weigh; midpoint is the paper's.",
+       .set =
+           [](Scene& s, std::size_t, Values v) {
+             s.discretisation.slice_rule = static_cast<model::SliceRule>(static_cast<int>(v[0]));
+           }},
+      {.name = "slice_solver",
+       .kind = Kind::choice,
+       .choices = {"newton", "fixed_point"},
+       .default_text = "newton",
+       .doc = "Newton on all slices together (SNES), or the paper's fixed point.",
+       .set =
+           [](Scene& s, std::size_t, Values v) {
+             s.discretisation.slice_solver = static_cast<model::SliceSolver>(static_cast<int>(v[0]));
+           }},
+      {.name = "sweep_<option>",
+       .kind = Kind::text,
+       .scope = Scope::program,
+       .format = "a list of values that the option itself allows",
+       .example = "1.4,1.6,1.8",
+       .doc = "Values of one option to sweep; several such options make a grid.",
+       .commands = {Command::sweep}},
+      {.name = "voltage",
+       .scope = Scope::every_segment,
+       .components = {{.unit = "V", .range = voltages}},
+       .default_text = "0 V",
+       .doc = "Voltage of all modules once actuated.",
+       .sweepable = true,
+       .yields_to = {"bandage_<s>_voltage"},
+       .set = [](Scene& s, std::size_t i, Values v) { s.bandage.modules[i].voltage = v[0]; }},
+      {.name = "wall_points",
+       .kind = Kind::count,
+       .components = {{.range = {.low = 1, .high = 128}}},
+       .word = {"auto", 0},
+       .default_text = "auto",
+       .doc = "Gauss points through the wall; 1 is a thin wall, auto takes as many as the wall needs.",
+       .set = [](Scene& s, std::size_t, Values v) { s.discretisation.wall_points = static_cast<int>(v[0]); }},
+  };
+}
+
+}  // namespace
+
+bool Range::contains(double value) const {
+  if (magnitude) value = std::abs(value);
+  const bool above = low_open ? value > low : value >= low;
+  const bool below = high_open ? value < high : value <= high;
+  return above && below;
+}
+
+std::span<const Option> option_table() {
+  static const std::vector<Option> table = make_table();
+  return table;
+}
+
+const Option& option(std::string_view name) {
+  const auto table = option_table();
+  const auto found = std::ranges::lower_bound(table, name, {}, &Option::name);
+  if (found == table.end() || found->name != name) {
+    throw std::logic_error("no option " + std::string(name) + " in the table");
+  }
+  return *found;
+}
+
+std::string name_for(const Option& option, std::string_view segment) {
+  std::string name(option.name);
+  if (const auto at = name.find("<s>"); at != std::string::npos) name.replace(at, 3, segment);
+  return name;
+}
+
+}  // namespace gaiter::studies

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-2-Clause
+#include "gaiter/studies/solve.hpp"
+
+#include <type_traits>
+
+#include "gaiter/petsc/session.hpp"
+#include "gaiter/solvers/slice_model.hpp"
+
+namespace gaiter::studies {
+
+Solution solve_designs(MPI_Comm comm, const model::Scene& scene, const Designs& designs) {
+  const std::size_t segments = scene.leg.segments.size();
+  const std::size_t rows = static_cast<std::size_t>(designs.size()) * segments;
+  const std::size_t rank = petsc::rank(comm), ranks = petsc::size(comm);
+  const std::size_t first = rows * rank / ranks, last = rows * (rank + 1) / ranks;
+
+  const double start = MPI_Wtime();
+  std::vector<model::Scene> scenes;
+  std::vector<solvers::SegmentTask> tasks;
+  const std::size_t first_design = first / segments;
+  if (last > first)
+    for (std::size_t design = first_design; design <= (last - 1) / segments; ++design) {
+      scenes.push_back(scene);
+      designs.apply(static_cast<std::int64_t>(design), scenes.back());
+    }
+  for (std::size_t row = first; row < last; ++row)
+    tasks.push_back({&scenes[row / segments - first_design], row % segments});
+
+  Solution solution{first, solvers::solve_segments(comm, tasks), 0};
+  solution.seconds = petsc::largest(comm, MPI_Wtime() - start);
+  return solution;
+}
+
+std::vector<model::SegmentResult> gather(MPI_Comm comm, const Solution& solution) {
+  static_assert(std::is_trivially_copyable_v<model::SegmentResult>);
+  const int ranks = petsc::size(comm),
+            bytes = static_cast<int>(solution.rows.size() * sizeof(model::SegmentResult));
+  std::vector<int> sizes(ranks), offsets(ranks + 1, 0);
+  MPI_Gather(&bytes, 1, MPI_INT, sizes.data(), 1, MPI_INT, 0, comm);
+  for (int r = 0; r < ranks; ++r) offsets[r + 1] = offsets[r] + sizes[r];
+  std::vector<model::SegmentResult> all(offsets[ranks] / sizeof(model::SegmentResult));
+  MPI_Gatherv(solution.rows.data(), bytes, MPI_BYTE, all.data(), sizes.data(), offsets.data(), MPI_BYTE, 0,
+              comm);
+  return all;
+}
+
+std::array<double, 7> count_status(MPI_Comm comm, const Solution& solution) {
+  std::array<double, 7> local{}, all{};
+  for (const model::SegmentResult& row : solution.rows) ++local[static_cast<std::size_t>(row.status)];
+  MPI_Allreduce(local.data(), all.data(), 7, MPI_DOUBLE, MPI_SUM, comm);
+  return all;
+}
+
+}  // namespace gaiter::studies
