@@ -20,14 +20,14 @@ LegConstants leg_constants(const model::Leg& leg, const model::Segment& segment)
 double pressure_bound(const model::Leg& leg, const LegConstants& constants, double strain) {
   constexpr double rounding = 1 + 1e-9;
   if (leg.material == model::LegMaterial::neo_hookean) {
-    const double ratio = strain < 0.99 ? 1 - strain : 0.01;  // r/R_c
+    const double reached = strain < 0.99 ? strain : 0.99;
     const double bulk = constants.value[0], shear = constants.value[1];
-    return (1 - ratio) * (1 + ratio) * (bulk + shear * std::pow(ratio, -10.0 / 3)) * rounding;
+    return reached * (2 - reached) * (bulk + shear * std::pow(1 - reached, -10.0 / 3)) * rounding;
   }
   // a exp(bP) = strain - c exp(dP), where c <= 0 and the second exponential is between 0 and 1.
-  const double a = constants.value[0], c = constants.value[1];
+  const double a = constants.value[0], strain_of_none = constants.value[2];  // a + c
   const double reached = strain < 1 ? strain : 1;
-  return reached <= a + c ? 0 : std::log((reached - c) / a) * rounding;
+  return reached <= strain_of_none ? 0 : std::log1p((reached - strain_of_none) / a) * rounding;
 }
 
 }  // namespace gaiter::physics

@@ -65,6 +65,7 @@ class SliceStudy {
   std::vector<std::size_t> first_;  // first slice of each task, and the end
   std::vector<physics::Quadrature> rules_;
   bool energised_ = false;  // somewhere, on any rank
+  bool newton_ = true;      // all ranks agree, those without tasks too
   SliceSystem system_;
   std::vector<PackState> states_;
   std::vector<SliceOutcome> outcomes_;
@@ -93,6 +94,9 @@ SliceStudy::SliceStudy(MPI_Comm comm, std::span<const SegmentTask> tasks)
   energised_ = !petsc::agree(comm_, std::all_of(tasks_.begin(), tasks_.end(), [](const SegmentTask& task) {
                                return voltage_of(task) == 0;
                              }));
+  newton_ = petsc::agree(comm_, std::all_of(tasks_.begin(), tasks_.end(), [](const SegmentTask& task) {
+                           return task.scene->discretisation.slice_solver == model::SliceSolver::newton;
+                         }));
   set_constants();
 }
 
@@ -152,33 +156,29 @@ void SliceStudy::rigid_pressures() {
 
 void SliceStudy::rest(SliceSolver& solver) {
   system_.energise(false);
-  const bool newton =
-      tasks_.empty() || tasks_[0].scene->discretisation.slice_solver == model::SliceSolver::newton;
   Pack unused;
-  for (std::size_t k = 0; k < system_.packs(); ++k)
-    if (newton)
+  solver.solve(system_, states_, [&](std::size_t k) {
+    if (newton_)
       physics::start_at_rest(system_.shape(), system_.pack(k), states_[k], unused);
     else
       physics::start_fixed_point(true, states_[k]);
-  solver.solve(system_, states_);
-  if (newton) solve_doubtful(solver, true);
+  });
+  if (newton_) solve_doubtful(solver, true);
   record(true);
 }
 
 void SliceStudy::actuate(SliceSolver& solver) {
   system_.energise(true);
-  const bool newton =
-      tasks_.empty() || tasks_[0].scene->discretisation.slice_solver == model::SliceSolver::newton;
   for (std::size_t k = 0; k < system_.packs(); ++k) {
     rest_pressure_[k] = states_[k].pressure;
-    newton ? physics::start_actuated(states_[k]) : physics::start_fixed_point(false, states_[k]);
+    newton_ ? physics::start_actuated(states_[k]) : physics::start_fixed_point(false, states_[k]);
   }
   each_slice([&](std::size_t slice, std::size_t t, std::size_t pack, int place) {
     if (voltage_of(tasks_[t]) == 0 || outcomes_[slice].status >= Status::no_equilibrium)
       states_[pack].open[place] = 0;
   });
   solver.solve(system_, states_);
-  if (newton) solve_doubtful(solver, false);
+  if (newton_) solve_doubtful(solver, false);
   record(false);
 }
 
@@ -205,14 +205,13 @@ void SliceStudy::solve_doubtful(SliceSolver& solver, bool at_rest) {
     }
   });
   if (petsc::sum(comm_, reopened) == 0) return;
-  // The iterates start on the leg's law.
-  for (std::size_t k = 0; k < system_.packs(); ++k) {
+  solver.solve(system_, states_, [&](std::size_t k) {
+    // The iterates start on the leg's law.
     Pack strain, slope;
     physics::leg_strain(system_.shape(), system_.pack(k), states_[k].pressure, strain, slope);
     for (int i = 0; i < pack_width; ++i)
       if (states_[k].open[i] > 0 || states_[k].pressure[i] == 0) states_[k].strain[i] = strain[i];
-  }
-  solver.solve(system_, states_);
+  });
 }
 
 // States of the slices to outcomes.
@@ -292,12 +291,9 @@ std::vector<model::SegmentResult> SliceStudy::run() {
       if (outcome.pressure_rest == 0) outcome.status = Status::slack;
     });
   } else {
-    const double fixed_point = petsc::largest(
-        comm_, scene && scene->discretisation.slice_solver == model::SliceSolver::fixed_point ? 1 : 0);
     const double tolerance = petsc::largest(comm_, scene ? scene->discretisation.fixed_point_tolerance : 0);
     SliceSolver solver(comm_, system_.packs(),
-                       fixed_point > 0 ? model::SliceSolver::fixed_point : model::SliceSolver::newton,
-                       tolerance);
+                       newton_ ? model::SliceSolver::newton : model::SliceSolver::fixed_point, tolerance);
     rest(solver);
     if (energised_) actuate(solver);
   }

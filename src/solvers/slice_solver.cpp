@@ -115,28 +115,43 @@ PetscErrorCode SliceSolver::create_matrix(MPI_Comm comm, PetscInt rows) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-SliceReport SliceSolver::solve(const physics::SliceSystem& system, std::vector<PackState>& states) {
+SliceReport SliceSolver::solve(const physics::SliceSystem& system, std::vector<PackState>& states,
+                               const Start& start) {
   system_ = &system;
   states_ = &states;
   SliceReport report;
-  petsc::check(run(report));
+  petsc::check(run(start, report));
   return report;
 }
 
-PetscErrorCode SliceSolver::run(SliceReport& report) {
+PetscErrorCode SliceSolver::run(const Start& start, SliceReport& report) {
   PetscFunctionBegin;
-  PetscScalar* x = nullptr;
-  PetscCall(VecGetArray(solution_.get(), &x));
-  for (std::size_t k = 0; k < states_->size(); ++k)
-    write_pairs((*states_)[k].strain, (*states_)[k].pressure, x + 2 * pack_width * k);
-  PetscCall(VecRestoreArray(solution_.get(), &x));
-  PetscCall(SNESGetTolerances(snes_.get(), nullptr, &tolerance_, nullptr, nullptr, nullptr));
+  // The first residual is taken pack by pack with the start, while its constants are at hand.
+  PetscScalar *iterate = nullptr, *residual = nullptr;
+  PetscCall(VecGetArrayWrite(solution_.get(), &iterate));
+  PetscCall(VecGetArrayWrite(residual_.get(), &residual));
+  for (std::size_t k = 0; k < states_->size(); ++k) {
+    PackState& state = (*states_)[k];
+    start(k);
+    physics::evaluate_residual(system_->shape(), system_->pack(k), state);
+    write_pairs(state.strain, state.pressure, iterate + 2 * pack_width * k);
+    write_pairs(state.strain_residual, state.pressure_residual, residual + 2 * pack_width * k);
+  }
+  PetscInt size = 0;
+  PetscCall(VecGetLocalSize(solution_.get(), &size));
+  for (PetscInt i = 2 * pack_width * states_->size(); i < size; ++i) iterate[i] = residual[i] = 0;
+  PetscCall(VecRestoreArrayWrite(residual_.get(), &residual));
+  PetscCall(VecRestoreArrayWrite(solution_.get(), &iterate));
+  current_ = true;
   blockwise_ = false;
+  PetscCall(SNESGetTolerances(snes_.get(), nullptr, &tolerance_, nullptr, nullptr, nullptr));
+  PetscCall(SNESSetInitialFunction(snes_.get(), residual_.get()));
   PetscCall(SNESSolve(snes_.get(), nullptr, solution_.get()));
 
+  // Our own line search leaves the solution in the states; others leave it in the Vec alone.
   const PetscScalar* result = nullptr;
   PetscCall(VecGetArrayRead(solution_.get(), &result));
-  for (std::size_t k = 0; k < states_->size(); ++k)
+  for (std::size_t k = 0; !blockwise_ && k < states_->size(); ++k)
     read_pairs(result + 2 * pack_width * k, (*states_)[k].strain, (*states_)[k].pressure);
   PetscCall(VecRestoreArrayRead(solution_.get(), &result));
   PetscInt iterations = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-2-Clause
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "gaiter/model/scene.hpp"
@@ -31,9 +32,15 @@ class SliceSolver {
   SliceSolver(const SliceSolver&) = delete;
   SliceSolver& operator=(const SliceSolver&) = delete;
 
-  // @note Collective. `states`, a pack each, hold the started iterates and take the solution; slices that are
-  // not open stay as they are. The system may have fewer packs than the solver, none too.
-  SliceReport solve(const physics::SliceSystem& system, std::vector<physics::PackState>& states);
+  // Sets the iterate of one pack.
+  using Start = std::function<void(std::size_t pack)>;
+
+  // @note Collective. `states`, a pack each, take the solution; they hold the started iterates, or `start`
+  // sets them. Slices that are not open stay as they are. The system may have fewer packs than the solver,
+  // none too.
+  SliceReport solve(
+      const physics::SliceSystem& system, std::vector<physics::PackState>& states,
+      const Start& start = [](std::size_t) {});
 
   SNES snes() const { return snes_.get(); }
 
@@ -53,7 +60,7 @@ class SliceSolver {
 
   PetscErrorCode create(MPI_Comm comm, std::size_t packs);
   PetscErrorCode create_matrix(MPI_Comm comm, PetscInt rows);
-  PetscErrorCode run(SliceReport& report);
+  PetscErrorCode run(const Start& start, SliceReport& report);
   PetscErrorCode evaluate(Vec x, Vec f);
   PetscErrorCode close_where_converged(SNES snes);
   PetscErrorCode add_over_ranks(Totals& totals) const;
