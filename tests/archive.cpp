@@ -15,8 +15,8 @@
 #include <regex>
 #include <sstream>
 
+#include <mpi.h>
 #include "gaiter/archive/hdf5.hpp"
-#include "gaiter/archive/mpi.hpp"
 #include "gaiter/archive/provenance.hpp"
 #include "gaiter/archive/reader.hpp"
 #include "gaiter/archive/schema.hpp"
@@ -79,8 +79,9 @@ SegmentResult sample_row(std::size_t row) {
   result.volume_change = 12000 + x;
   result.radius_actuated = 13000 + x;
   result.stretch_actual = 14000 + x;
-  result.electric_field_max = 15000 + x;
-  result.error_estimate = 16000 + x;
+  result.slip_max = 15000 + x;
+  result.electric_field_max = 16000 + x;
+  result.error_estimate = 17000 + x;
   result.iterations = static_cast<int>(100000 + row);
   result.status = static_cast<model::Status>(row % 7);
   result.fidelity = static_cast<model::Fidelity>(row % 2);
@@ -171,6 +172,7 @@ void expect_rows(const Archive& archive, const std::vector<SegmentResult>& rows)
   expect("volume_change", &SegmentResult::volume_change);
   expect("radius_actuated", &SegmentResult::radius_actuated);
   expect("stretch_actual", &SegmentResult::stretch_actual);
+  expect("slip_max", &SegmentResult::slip_max);
   expect("electric_field_max", &SegmentResult::electric_field_max);
   expect("error_estimate", &SegmentResult::error_estimate);
   expect("iterations", &SegmentResult::iterations);
@@ -360,8 +362,8 @@ TEST(Archive, TellsDimensionsUnitsFlagsAndProvenance) {
     EXPECT_EQ(archive.variables.at("voltage").attributes.at("units"), "V");
     const Variable& fidelity = archive.variables.at("fidelity");
     EXPECT_EQ(fidelity.type, "int8");
-    EXPECT_EQ(fidelity.attributes.at("flag_values"), "0 1");
-    EXPECT_EQ(fidelity.attributes.at("flag_meanings"), "rigid slice");
+    EXPECT_EQ(fidelity.attributes.at("flag_values"), "0 1 2 3");
+    EXPECT_EQ(fidelity.attributes.at("flag_meanings"), "rigid slice sliding axisym");
     EXPECT_EQ(archive.variables.at("iterations").type, "int32");
     EXPECT_EQ(archive.attributes.at("options"), provenance.options);
     EXPECT_EQ(archive.attributes.at("schema_version"), "1");

@@ -17,12 +17,12 @@ REALS = {
     "pressure_rest": "Pa", "pressure_actuated": "Pa", "pressure_rest_rigid": "Pa",
     "pressure_actuated_rigid": "Pa", "pressure_rest_area_mean": "Pa", "pressure_actuated_area_mean": "Pa",
     "actuation_drop": "Pa", "actuation_pressure": "Pa", "volume_initial": "m3", "volume_rest": "m3",
-    "volume_actuated": "m3", "volume_change": "1", "radius_actuated": "m", "stretch_actual": "1",
+    "volume_actuated": "m3", "volume_change": "1", "radius_actuated": "m", "stretch_actual": "1", "slip_max": "m",
     "electric_field_max": "V m-1", "error_estimate": "1",
 }
 FLAGS = {
     "status": "contact slack lifted extrapolated pulled_in no_equilibrium diverged",
-    "fidelity": "rigid slice",
+    "fidelity": "rigid slice sliding axisym",
 }
 PER_CASE = {
     "bandage_stretch": ("1", 1.5 + 0.125 * np.arange(CASES)),

@@ -2,3 +2,6 @@
 include(cases_options.cmake OPTIONAL)
 include(cases_archive.cmake OPTIONAL)
 include(cases_slices.cmake OPTIONAL)
+include(cases_command_line.cmake OPTIONAL)
+include(cases_sliding.cmake OPTIONAL)
+include(cases_axisym.cmake OPTIONAL)

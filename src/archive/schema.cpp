@@ -54,6 +54,9 @@ constexpr std::array table{
     Column{"stretch_actual", "1",
            "stretch of the bandage at rest, once the leg has given way, mean over the height of the segment",
            &Row::stretch_actual},
+    Column{"slip_max", "m",
+           "largest distance that a point of the bandage has slid along the leg, at rest or under voltage",
+           &Row::slip_max},
     Column{"electric_field_max", "V m-1", "largest true electric field in the wall of the bandage",
            &Row::electric_field_max},
     Column{"error_estimate", "1", "estimated relative error of the pressures", &Row::error_estimate},
@@ -67,8 +70,8 @@ constexpr std::array status_words{"contact",   "slack",          "lifted",  "ext
                                   "pulled_in", "no_equilibrium", "diverged"};
 static_assert(status_words.size() == static_cast<std::size_t>(model::Status::diverged) + 1);
 
-constexpr std::array fidelity_words{"rigid", "slice"};
-static_assert(fidelity_words.size() == static_cast<std::size_t>(model::Fidelity::slice) + 1);
+constexpr std::array fidelity_words{"rigid", "slice", "sliding", "axisym"};
+static_assert(fidelity_words.size() == static_cast<std::size_t>(model::Fidelity::axisym) + 1);
 
 std::int8_t stored(model::Status value) {
   return static_cast<std::int8_t>(value);

@@ -16,14 +16,14 @@ void spread(double from, double to, Pack& points) {
   points[pack_width - 1] = to;
 }
 
-// First interval, on the way from `from` to `to`, in which balance(points, value, slope) becomes >= 0. It is
-// taken to be negative at `from`.
+// First interval, on the way from `from` to `to`, in which balance(points, value, slope) becomes >= 0; empty
+// where it is so at `from` already.
 template <typename Balance>
 std::optional<Interval> first_crossing(const Balance& balance, double from, double to, int depth = 0) {
   Pack points, value, slope;
   spread(from, to, points);
   balance(points, value, slope);
-  if (depth == 0 && value[0] >= 0) return std::nullopt;
+  if (depth == 0 && value[0] >= 0) return Interval{from, from};
   const double direction = to > from ? 1 : -1;
   for (int i = 1; i < pack_width; ++i) {
     const bool crosses = value[i] >= 0;
@@ -69,7 +69,7 @@ std::optional<Interval> contact_interval(const SliceSystem& system, std::size_t 
     }
   };
   const auto found = first_crossing(balance, ascending ? 0 : 1, ascending ? 1 : 0);
-  if (!found) return std::nullopt;
+  if (!found || (ascending && found->to == 0)) return std::nullopt;
   return Interval{highest * std::pow(found->from, 3), highest * std::pow(found->to, 3)};
 }
 

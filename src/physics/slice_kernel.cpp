@@ -100,7 +100,7 @@ void bandage_pressure(const SliceShape& shape, const Pack* rows, const Pack& str
                       Pack& slope) {
   const int terms = shape.ogden_terms;
   const Pack *mu = rows + shape.mu_row(0), *alpha = rows + shape.alpha_row(0),
-             *wall = rows + shape.wall_row(0);
+             *wall = rows + shape.wall_row(0), *weight = rows + shape.weight_row(0);
   const int points = static_cast<int>(shape.wall.nodes.size());
 
   Pack swell, swell_slope, log_stretch, stress, stress_slope, inverse;
@@ -118,18 +118,19 @@ void bandage_pressure(const SliceShape& shape, const Pack* rows, const Pack& str
       const Pack &modulus = mu[term], &exponent = alpha[term];
       GAITER_EACH {
         const double wanted = exponent[i] * log_stretch[i];
-        const double below = wanted < largest_exponent ? wanted : largest_exponent;
-        const double power = expm1(below > -largest_exponent ? below : -largest_exponent);
+        // Of the magnitude: 1 + expm1 of a negative number would lose the digits of a small exponential.
+        const double size = std::fabs(wanted);
+        const double power = expm1(size < largest_exponent ? size : largest_exponent);
         const double reciprocal = 1 / (1 + power);
-        const double hyperbolic_sine = 0.5 * (power + power * reciprocal);
-        const double hyperbolic_cosine = hyperbolic_sine + reciprocal;
+        const double sine_of_size = 0.5 * (power + power * reciprocal);
+        const double hyperbolic_sine = std::copysign(sine_of_size, wanted);
+        const double hyperbolic_cosine = sine_of_size + reciprocal;
         stress[i] += modulus[i] * hyperbolic_sine;
         stress_slope[i] += modulus[i] * (exponent[i] * hyperbolic_cosine - 2 * hyperbolic_sine);
       }
     }
-    const double weight = shape.wall.weights[j];
     GAITER_EACH {
-      const double share = weight * inverse[i];
+      const double share = weight[j][i] * inverse[i];
       pressure[i] += share * stress[i];
       slope[i] += share * inverse[i] * ratio[i] * stress_slope[i];
     }

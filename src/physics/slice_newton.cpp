@@ -155,9 +155,12 @@ void advance_newton(const SliceShape& shape, const Pack* rows, const Pack& direc
     const bool closing =
         residual == 0 || (slope > 0 && (error <= tolerance * trial[i] || next <= noise)) || collapsed;
     const double polished = trial[i] - residual / slope;
-    const bool polish = closing && slope > 0 && polished > (low > 0 ? low : 0) && polished < high;
+    // A slice that closes on the error after this last step must take it, to the end of its bracket if need
+    // be.
+    const double kept = polished < high ? polished : high;
+    const bool polish = closing && slope > 0 && kept > (low > 0 ? low : 0);
 
-    const double pressure = polish ? polished : trial[i];
+    const double pressure = polish ? kept : trial[i];
     state.pressure[i] = open ? pressure : state.pressure[i];
     state.strain[i] = open ? strain[i] + strain_slope[i] * (pressure - trial[i]) : state.strain[i];
     state.strain_residual[i] = open ? 0 : state.strain_residual[i];
@@ -178,8 +181,9 @@ void advance_fixed_point(const SliceShape& shape, const Pack* rows, const Pack& 
   Pack trial, strain, strain_slope;
   const Pack& limit = rows[SliceShape::pressure_limit];
   GAITER_EACH {
-    const double wanted = state.pressure[i] - direction[i];
-    const bool admissible = wanted >= 0 && wanted < limit[i];
+    const double unlimited = state.pressure[i] - direction[i];
+    const double wanted = unlimited < 0 ? 0 : unlimited;  // a bandage cannot pull
+    const bool admissible = wanted < limit[i];
     state.failed[i] = state.open[i] > 0 && !admissible ? 1 : state.failed[i];
     trial[i] = state.open[i] > 0 && admissible ? wanted : state.pressure[i];
   }

@@ -40,7 +40,8 @@ SliceSystem::SliceSystem(SliceShape shape, std::size_t slices)
       rows_(packs_ * rows_per_pack_) {}
 
 void SliceSystem::set(std::size_t index, const model::Leg& leg, const model::Segment& segment,
-                      const model::Bandage& bandage, const Wall& wall, double slice_radius, double voltage) {
+                      const model::Bandage& bandage, const Wall& wall, double slice_radius, double voltage,
+                      const Quadrature* wall_rule) {
   const double inner = wall.inner_radius;
   const LegConstants constants = leg_constants(leg, segment);
   const double scale = constants.pressure_scale;
@@ -59,8 +60,13 @@ void SliceSystem::set(std::size_t index, const model::Leg& leg, const model::Seg
     at(index, shape_.mu_row(i)) = bandage.ogden[i].mu / scale;
     at(index, shape_.alpha_row(i)) = bandage.ogden[i].alpha;
   }
-  for (std::size_t j = 0; j < shape_.wall.nodes.size(); ++j)
-    at(index, shape_.wall_row(static_cast<int>(j))) = std::exp(-log_area * shape_.wall.nodes[j]);
+  const Quadrature& rule = wall_rule ? *wall_rule : shape_.wall;
+  for (std::size_t j = 0; j < shape_.wall.nodes.size(); ++j) {
+    // Points that this slice does not use lie on the inner face, without weight.
+    const bool used = j < rule.nodes.size();
+    at(index, shape_.wall_row(static_cast<int>(j))) = used ? std::exp(-log_area * rule.nodes[j]) : 1;
+    at(index, shape_.weight_row(static_cast<int>(j))) = used ? rule.weights[j] : 0;
+  }
   for (int k = 0; k < layers_; ++k) {
     // A slice with fewer layers than the system has the rest of them without voltage.
     const double thickness = wall.thickness / bandage.layers;

@@ -8,6 +8,7 @@
 #include "gaiter/physics/branch.hpp"
 #include "gaiter/physics/segment_summary.hpp"
 #include "gaiter/physics/slice_kernel.hpp"
+#include "gaiter/physics/wall_resolution.hpp"
 #include "gaiter/solvers/slice_solver.hpp"
 
 namespace gaiter::solvers {
@@ -23,8 +24,10 @@ using physics::SliceShape;
 using physics::SliceSystem;
 
 constexpr double wall_tolerance =
-    1e-12;  // of the quadrature through the wall, where the points are chosen here
-constexpr int most_wall_points = 128;
+    1e-12;                      // of the quadrature through the wall, where the points are chosen here
+constexpr double caution = 10;  // of an error estimated from starting values instead of solutions
+constexpr double smallest_error = 4e-15;  // of a sum of some slices, by rounding
+constexpr int most_check_points = 128;    // over the height, of the rule that an error estimate compares with
 // f' of the scalar equation of a slice: 1 for a bandage that does not stiffen or soften with the leg's
 // radius. Below this there may be a limit point near by, and the equilibrium is searched for along the path.
 constexpr double doubtful_slope = 0.5;
@@ -48,9 +51,9 @@ class SliceStudy {
   std::vector<model::SegmentResult> run();
 
  private:
-  SliceShape common_shape() const;
   void set_constants();
   void rigid_pressures();
+  std::vector<double> height_errors(bool rigid) const;
   void rest(SliceSolver& solver);
   void actuate(SliceSolver& solver);
   void solve_doubtful(SliceSolver& solver, bool at_rest);
@@ -62,10 +65,11 @@ class SliceStudy {
 
   MPI_Comm comm_;
   std::span<const SegmentTask> tasks_;
-  std::vector<std::size_t> first_;  // first slice of each task, and the end
-  std::vector<physics::Quadrature> rules_;
-  bool energised_ = false;  // somewhere, on any rank
-  bool newton_ = true;      // all ranks agree, those without tasks too
+  std::vector<std::size_t> first_;               // first slice of each task, and the end
+  std::vector<physics::Quadrature> rules_;       // over the height, of each task
+  std::vector<physics::Quadrature> wall_rules_;  // through the wall
+  bool energised_ = false;                       // somewhere, on any rank
+  bool newton_ = true;                           // all ranks agree, those without tasks too
   SliceSystem system_;
   std::vector<PackState> states_;
   std::vector<SliceOutcome> outcomes_;
@@ -78,10 +82,43 @@ int count_slices(std::span<const SegmentTask> tasks) {
   return count;
 }
 
+int wall_points_of(const SegmentTask& task) {
+  const int asked = task.scene->discretisation.wall_points;
+  return asked > 0 ? asked : physics::wall_points_for(*task.scene, task.segment, wall_tolerance);
+}
+
+// What all of these tasks fit into.
+SliceShape common_shape(std::span<const SegmentTask> tasks) {
+  SliceShape shape;
+  int points = 1;
+  for (const SegmentTask& task : tasks) {
+    const model::Scene& scene = *task.scene;
+    points = std::max(points, wall_points_of(task));
+    shape.layers = std::max(shape.layers, voltage_of(task) != 0 ? scene.bandage.layers : 0);
+    shape.ogden_terms = static_cast<int>(scene.bandage.ogden.size());
+    shape.material = scene.leg.material;
+  }
+  shape.wall = physics::gauss_legendre(points);
+  return shape;
+}
+
+// Puts a slice of a task, at a height from 0 to 1, into a system; gives the undeformed radius of the leg
+// there.
+double set_slice(SliceSystem& system, std::size_t slice, const SegmentTask& task, double height,
+                 const physics::Quadrature& wall_rule) {
+  const model::Scene& scene = *task.scene;
+  const model::Segment& segment = scene.leg.segments[task.segment];
+  const model::Module& module = scene.bandage.modules[task.segment];
+  const double radius = segment.lower_radius + height * (segment.upper_radius - segment.lower_radius);
+  const physics::Wall wall = physics::reference_wall(scene.bandage, module, segment.mean_radius(), radius);
+  system.set(slice, scene.leg, segment, scene.bandage, wall, radius, module.voltage, &wall_rule);
+  return radius;
+}
+
 SliceStudy::SliceStudy(MPI_Comm comm, std::span<const SegmentTask> tasks)
     : comm_(comm),
       tasks_(tasks),
-      system_(common_shape(), count_slices(tasks)),
+      system_(common_shape(tasks), count_slices(tasks)),
       states_(system_.packs()),
       outcomes_(system_.slices()),
       rest_pressure_(system_.packs()) {
@@ -90,6 +127,7 @@ SliceStudy::SliceStudy(MPI_Comm comm, std::span<const SegmentTask> tasks)
     const auto& how = task.scene->discretisation;
     first_.push_back(first_.back() + how.slice_count);
     rules_.push_back(physics::slice_quadrature(how.slice_rule, how.slice_count));
+    wall_rules_.push_back(physics::gauss_legendre(wall_points_of(task)));
   }
   energised_ = !petsc::agree(comm_, std::all_of(tasks_.begin(), tasks_.end(), [](const SegmentTask& task) {
                                return voltage_of(task) == 0;
@@ -98,24 +136,6 @@ SliceStudy::SliceStudy(MPI_Comm comm, std::span<const SegmentTask> tasks)
                            return task.scene->discretisation.slice_solver == model::SliceSolver::newton;
                          }));
   set_constants();
-}
-
-// The number of wall points is the most that any module of any rank needs: results must not depend on the
-// ranks.
-SliceShape SliceStudy::common_shape() const {
-  SliceShape shape;
-  double points = 1;
-  for (const SegmentTask& task : tasks_) {
-    const model::Scene& scene = *task.scene;
-    const int asked = scene.discretisation.wall_points;
-    points =
-        std::max<double>(points, asked > 0 ? asked : wall_points_for(scene, task.segment, wall_tolerance));
-    shape.layers = std::max(shape.layers, voltage_of(task) != 0 ? scene.bandage.layers : 0);
-    shape.ogden_terms = static_cast<int>(scene.bandage.ogden.size());
-    shape.material = scene.leg.material;
-  }
-  shape.wall = physics::gauss_legendre(static_cast<int>(petsc::largest(comm_, points)));
-  return shape;
 }
 
 template <typename Action>
@@ -128,15 +148,12 @@ void SliceStudy::each_slice(Action&& action) {
 void SliceStudy::set_constants() {
   each_slice([&](std::size_t slice, std::size_t t, std::size_t, int) {
     const model::Scene& scene = *tasks_[t].scene;
-    const model::Segment& segment = scene.leg.segments[tasks_[t].segment];
     const model::Module& module = scene.bandage.modules[tasks_[t].segment];
-    const double height = rules_[t].nodes[slice - first_[t]];
-    const double radius = segment.lower_radius + height * (segment.upper_radius - segment.lower_radius);
-    const physics::Wall wall = physics::reference_wall(scene.bandage, module, segment.mean_radius(), radius);
-    system_.set(slice, scene.leg, segment, scene.bandage, wall, radius, module.voltage);
-    outcomes_[slice].leg_radius = radius;
-    outcomes_[slice].reference_radius =
-        module.length > 0 ? module.length / (2 * M_PI) : segment.mean_radius() / module.stretch;
+    const double mean_radius = scene.leg.segments[tasks_[t].segment].mean_radius();
+    SliceOutcome& outcome = outcomes_[slice];
+    outcome.leg_radius =
+        set_slice(system_, slice, tasks_[t], rules_[t].nodes[slice - first_[t]], wall_rules_[t]);
+    outcome.reference_radius = module.length > 0 ? module.length / (2 * M_PI) : mean_radius / module.stretch;
   });
 }
 
@@ -235,6 +252,7 @@ void SliceStudy::record(bool at_rest) {
       if (pressure == 0) outcome.status = std::max(outcome.status, Status::slack);
     }
     outcome.pressure_actuated = pressure;
+    outcome.strain_actuated = state.strain[place];
     outcome.radius_actuated = radius;
     outcome.bandage_radius_actuated = pressure > 0 ? radius : std::max(radius, touching);
   });
@@ -273,6 +291,49 @@ void SliceStudy::finish_actuated() {
   });
 }
 
+// Relative error of each task's height average, from that of the starting values, which are close to the
+// pressures and cost one evaluation each: their average by the task's rule against the one by a finer rule.
+std::vector<double> SliceStudy::height_errors(bool rigid) const {
+  std::vector<physics::Quadrature> fine;
+  std::vector<std::size_t> first{0};  // of each task: the fine slices, then those of its own rule
+  for (const physics::Quadrature& rule : rules_) {
+    const int count = static_cast<int>(rule.nodes.size());
+    fine.push_back(physics::gauss_legendre(std::min(2 * count + 4, most_check_points)));
+    first.push_back(first.back() + fine.back().nodes.size() + count);
+  }
+  SliceSystem system(common_shape(tasks_), first.back());
+  for (std::size_t t = 0; t < tasks_.size(); ++t) {
+    std::size_t slice = first[t];
+    for (double height : fine[t].nodes) set_slice(system, slice++, tasks_[t], height, wall_rules_[t]);
+    for (double height : rules_[t].nodes) set_slice(system, slice++, tasks_[t], height, wall_rules_[t]);
+  }
+  std::vector<double> errors(tasks_.size(), smallest_error);
+  for (bool on : {false, true}) {
+    system.energise(on);
+    std::vector<PackState> start(system.packs());
+    for (std::size_t k = 0; k < system.packs(); ++k) {
+      Pack pressure;
+      physics::start_at_rest(system.shape(), system.pack(k), start[k], pressure);
+      if (rigid)
+        for (int i = 0; i < pack_width; ++i) start[k].pressure[i] = std::max(0.0, pressure[i]);
+    }
+    for (std::size_t t = 0; t < tasks_.size(); ++t) {
+      std::size_t slice = first[t];
+      const auto mean = [&](const physics::Quadrature& rule) {
+        double sum = 0;
+        for (double weight : rule.weights) {
+          sum += weight * start[slice / pack_width].pressure[slice % pack_width];
+          ++slice;
+        }
+        return sum;
+      };
+      const double finer = mean(fine[t]), own = mean(rules_[t]);
+      if (finer > 0) errors[t] = std::max(errors[t], caution * std::fabs(own / finer - 1));
+    }
+  }
+  return errors;
+}
+
 std::vector<model::SegmentResult> SliceStudy::run() {
   rigid_pressures();
   const model::Scene* scene = tasks_.empty() ? nullptr : tasks_[0].scene;
@@ -300,49 +361,20 @@ std::vector<model::SegmentResult> SliceStudy::run() {
   system_.energise(true);
   if (energised_) finish_actuated();
 
+  const std::vector<double> errors = height_errors(rigid);
   std::vector<model::SegmentResult> results;
   for (std::size_t t = 0; t < tasks_.size(); ++t) {
     const model::Scene& own = *tasks_[t].scene;
-    const int points = static_cast<int>(system_.shape().wall.nodes.size());
+    const double error = errors[t] + physics::wall_error(own, tasks_[t].segment,
+                                                         static_cast<int>(wall_rules_[t].nodes.size()));
     results.push_back(physics::summarise(std::span(outcomes_).subspan(first_[t], first_[t + 1] - first_[t]),
-                                         rules_[t], own.discretisation.slice_rule,
-                                         own.leg.segments[tasks_[t].segment].height,
-                                         wall_error(own, tasks_[t].segment, points)));
+                                         rules_[t], own.leg.segments[tasks_[t].segment].height, error));
     results.back().fidelity = rigid ? model::Fidelity::rigid : model::Fidelity::slice;
   }
   return results;
 }
 
 }  // namespace
-
-double wall_error(const model::Scene& scene, std::size_t segment, int points) {
-  const model::Segment& leg = scene.leg.segments[segment];
-  const double widest = std::max(leg.lower_radius, leg.upper_radius);
-  const physics::Wall wall =
-      physics::reference_wall(scene.bandage, scene.bandage.modules[segment], leg.mean_radius(), widest);
-  // Over the wall, whose logarithmic thickness is that of its area, lambda^(alpha - 2) changes by this
-  // exponent.
-  const double inner = wall.inner_radius, outer = inner + wall.thickness;
-  const double area = wall.thickness * (inner + outer) / (inner * inner);
-  const double log_area = std::log1p(area);
-  const double swell = wall.gap * (2 * inner + wall.gap);
-  const double stretch_span =
-      0.5 * std::fabs(std::log1p(swell / (inner * inner)) - std::log1p(swell / (outer * outer)));
-  double steepest = 0;
-  for (const auto& term : scene.bandage.ogden) steepest = std::max(steepest, std::fabs(term.alpha));
-  const double exponential =
-      physics::gauss_error_of_exponential(points, (steepest + 2) * stretch_span + 1e-3 * log_area);
-  // 1/lambda^2 has poles at a distance of pi / log_area from the wall: the ellipse of convergence of Gauss.
-  const double pole = 2 * M_PI / log_area;
-  const double ellipse = pole + std::hypot(1.0, pole);
-  return exponential + std::pow(ellipse, -2.0 * points);
-}
-
-int wall_points_for(const model::Scene& scene, std::size_t segment, double tolerance) {
-  int points = 2;
-  while (points < most_wall_points && wall_error(scene, segment, points) > tolerance) ++points;
-  return points;
-}
 
 std::vector<model::SegmentResult> solve_segments(MPI_Comm comm, std::span<const SegmentTask> tasks) {
   return SliceStudy(comm, tasks).run();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-2-Clause
 #include "gaiter/solvers/slice_solver.hpp"
 
+#include <petscdmshell.h>
+
 #include <cmath>
 
 #include "gaiter/petsc/check.hpp"
@@ -86,6 +88,10 @@ PetscErrorCode SliceSolver::create(MPI_Comm comm, std::size_t packs) {
     PetscCall(PCShellSetName(pc, "inverse of the 2 x 2 block of each slice"));
   }
   PetscCall(SNESSetFromOptions(snes));
+  // The trust region asks the SNES's shell DM for its work vectors before there is a solution to copy.
+  DM shell = nullptr;
+  PetscCall(SNESGetDM(snes, &shell));
+  PetscCall(DMShellSetGlobalVector(shell, solution_.get()));
   PetscCall(SNESSetUp(snes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -27,8 +27,9 @@ struct Bandage {
   double thickness = 1e-3;      // undeformed wall [m]
   LengthAt length_at = LengthAt::outer;
   std::vector<OgdenTerm> ogden;
-  double permittivity = 1;  // relative [1]
-  int layers = 1;           // of equal reference thickness, electrically in parallel
+  double bulk_modulus = std::numeric_limits<double>::infinity();  // finite elements only [Pa]
+  double permittivity = 1;                                        // relative [1]
+  int layers = 1;  // of equal reference thickness, electrically in parallel
   double breakdown_field = std::numeric_limits<double>::infinity();  // [V/m]
 };
 

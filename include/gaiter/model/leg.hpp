@@ -37,6 +37,7 @@ struct Leg {
   double data_limit = 7000;     // pressure up to which the compliance was measured [Pa]
   double young_modulus = 80e3;  // neo-Hookean leg [Pa]
   double poisson_ratio = 0.4;   // neo-Hookean leg [1]
+  double shear_modulus = 10e3;  // of the compliance material, in finite elements only [Pa]
 };
 
 }  // namespace gaiter::model

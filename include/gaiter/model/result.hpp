@@ -37,6 +37,7 @@ struct SegmentResult {
   double volume_change = 0;                // (initial - actuated) / initial, Eq. (10) [1]
   double radius_actuated = 0;              // of the leg, height average [m]
   double stretch_actual = 0;               // at rest, once the leg has given way, height average [1]
+  double slip_max = 0;                     // largest |z - Z| of the tube, at rest or actuated [m]
   double electric_field_max = 0;           // true field, at the inner face of a layer [V/m]
   double error_estimate = 0;               // relative error of the pressures, estimated [1]
   int iterations = 0;                      // Newton or fixed-point steps, the most of any slice

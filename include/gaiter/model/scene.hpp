@@ -6,9 +6,10 @@
 
 namespace gaiter::model {
 
-enum class Fidelity { rigid, slice };
+enum class Fidelity { rigid, slice, sliding, axisym };
 enum class SliceRule { gauss, midpoint };
 enum class SliceSolver { newton, fixed_point };
+enum class ContactAxial { free, held };  // along the leg: lubricated, or as laid on
 
 // How finely, and by which algorithm, the slice model is solved.
 struct Discretisation {
@@ -16,7 +17,20 @@ struct Discretisation {
   int slice_count = 6;  // a segment
   int wall_points = 0;  // Gauss points through the wall; 0: as many as the wall needs
   SliceSolver slice_solver = SliceSolver::newton;
+  int sliding_count = 24;               // slices of a sliding segment, rounded up to a multiple of three
   double fixed_point_tolerance = 1e-4;  // change of r over the undeformed radius at which the paper stops [1]
+};
+
+enum class Electrostatics { radial, off };  // field of the deformed wall in closed form, or none
+enum class ContactSide { tube, leg };
+
+// How the axisymmetric finite element model is solved.
+struct AxisymChoice {
+  Electrostatics electrostatics = Electrostatics::radial;
+  ContactSide multipliers = ContactSide::tube;  // surface whose vertices carry the contact pressure
+  int order = 2;                                // of the displacement: 2, 3 or 4
+  int refine = 1;                               // uniform refinements of the coarsest mesh
+  int ranks_per_case = 1;                       // that share the mesh of one segment
 };
 
 // Everything a solve needs: leg, bandage, loads (the modules' voltages) and how to solve.
@@ -24,7 +38,9 @@ struct Scene {
   Leg leg;
   Bandage bandage;
   Fidelity fidelity = Fidelity::slice;
+  ContactAxial contact_axial = ContactAxial::free;  // sliding and axisym
   Discretisation discretisation;
+  AxisymChoice axisym;
 };
 
 }  // namespace gaiter::model

@@ -17,7 +17,8 @@ struct Interval {
 
 // Pressures (units of S) around the equilibrium that the leg of slice `slice` reaches first when the pressure
 // grows from 0 to `highest` (ascending; the bandage is let down on the leg), or when it falls from `highest`
-// to 0 (the voltage rises). None: no contact on the way, or no equilibrium.
+// to 0 (the voltage rises). None: no contact on the way, or no equilibrium. Empty, at `highest`: a voltage
+// too low to be told from rounding.
 std::optional<Interval> contact_interval(const SliceSystem& system, std::size_t slice, double highest,
                                          bool ascending);
 

@@ -19,6 +19,7 @@ struct SliceOutcome {
   double pressure_actuated = 0;        // [Pa]
   double radius_rest = 0;              // of the leg [m]
   double radius_actuated = 0;          // of the leg [m]
+  double strain_actuated = 0;          // of the leg: 1 - radius_actuated / leg_radius with all its digits [1]
   double bandage_radius_rest = 0;      // inner face; larger than the leg's where they do not touch [m]
   double bandage_radius_actuated = 0;  // the leg's where the bandage has none (pulled in) [m]
   double actuation_pressure = 0;       // Eq. (8) at the actuated radius [Pa]
@@ -29,13 +30,8 @@ struct SliceOutcome {
 
 // Segment result from its slices at the nodes of `rule` over the height. All numbers but the initial volume
 // and the rigid pressures are NaN where a slice has no trustworthy result, the field also where one is pulled
-// in. `wall_error`: relative quadrature error of the wall, which the error estimate adds to that of the
-// height.
-model::SegmentResult summarise(std::span<const SliceOutcome> slices, const Quadrature& rule,
-                               model::SliceRule kind, double height, double wall_error);
-
-// Relative error of the mean of `values` at the nodes of `rule`, from how fast their Legendre coefficients
-// (Gauss) or their end slopes (midpoint) fall. One value tells nothing: 0.
-double height_error(std::span<const double> values, const Quadrature& rule, model::SliceRule kind);
+// in. `quadrature_error` becomes the error estimate.
+model::SegmentResult summarise(std::span<const SliceOutcome> slices, const Quadrature& rule, double height,
+                               double quadrature_error);
 
 }  // namespace gaiter::physics

@@ -12,7 +12,7 @@ namespace gaiter::physics {
 
 // What all slices of a system have in common, and so where a pack's rows are.
 struct SliceShape {
-  Quadrature wall;  // points through the wall, in the logarithm of the reference radius
+  Quadrature wall;  // the most points through the wall, in the logarithm of the reference radius
   int ogden_terms = 1;
   int layers = 0;  // 0: no voltage, the actuation is left out
   model::LegMaterial material = model::LegMaterial::compliance;
@@ -33,8 +33,9 @@ struct SliceShape {
   int mu_row(int term) const { return fixed_rows + term; }
   int alpha_row(int term) const { return mu_row(ogden_terms) + term; }
   int wall_row(int point) const { return alpha_row(ogden_terms) + point; }
+  int weight_row(int point) const { return wall_row(static_cast<int>(wall.nodes.size())) + point; }
   // Three rows a layer: (A/A_layer)^2, (B_layer^2 - A_layer^2)/A_layer^2, 2 eps V^2/(A_layer^2 S).
-  int layer_row(int layer) const { return wall_row(static_cast<int>(wall.nodes.size())) + 3 * layer; }
+  int layer_row(int layer) const { return weight_row(static_cast<int>(wall.nodes.size())) + 3 * layer; }
 };
 
 // The reference wall of a bandage module: inner radius and thickness.
@@ -60,9 +61,12 @@ class SliceSystem {
   std::size_t slices() const { return slices_; }
   std::size_t packs() const { return packs_; }
 
-  // Constants of slice `index`. The radii of the calf and the wall are those of the slice.
+  // Constants of slice `index`. The radii of the calf and the wall are those of the slice. `wall_rule`: its
+  // own points through the wall, at most as many as the shape's, so that a thin wall does not depend on what
+  // the thickest of the system needs; null: the shape's.
   void set(std::size_t index, const model::Leg& leg, const model::Segment& segment,
-           const model::Bandage& bandage, const Wall& wall, double leg_radius, double voltage);
+           const model::Bandage& bandage, const Wall& wall, double leg_radius, double voltage,
+           const Quadrature* wall_rule = nullptr);
 
   // With the voltage on, or off as if there were none (the rest state).
   void energise(bool on) { shape_.layers = on ? layers_ : 0; }

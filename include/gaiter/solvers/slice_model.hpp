@@ -23,9 +23,4 @@ struct SegmentTask {
 // @note Collective.
 std::vector<model::SegmentResult> solve_segments(MPI_Comm comm, std::span<const SegmentTask> tasks);
 
-// Gauss points through the wall of a module that make the quadrature error of its pressure smaller than
-// `tolerance`, a priori, and that error for a given number of points [1].
-int wall_points_for(const model::Scene& scene, std::size_t segment, double tolerance);
-double wall_error(const model::Scene& scene, std::size_t segment, int points);
-
 }  // namespace gaiter::solvers
