@@ -70,11 +70,12 @@ install_missing() {
   fi
 }
 
+# build_it [TARGET]
 build_it() {
   install_missing
   say "configuring and building in $build ($cores at a time)"
   cmake -S "$here" -B "$build" -DCMAKE_BUILD_TYPE=Release || fail "configuring failed"
-  cmake --build "$build" --parallel "$cores" || fail "building failed"
+  cmake --build "$build" --parallel "$cores" --target "${1:-all}" || fail "building failed"
 }
 
 # Open MPI refuses to run as root, or with more ranks than it counts cores, unless told otherwise.
@@ -89,7 +90,7 @@ allow_two_ranks() {
 
 case ${1:-help} in
   run)
-    build_it
+    build_it gaiter
     allow_two_ranks
     say "solving options/scenes/paper.yaml on 2 ranks"
     mpirun -n 2 "$build/bin/gaiter" solve -options_file "$here/options/scenes/paper.yaml" -output paper.h5 ||

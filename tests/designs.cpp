@@ -107,7 +107,7 @@ TEST(Designs, EverySweepableOptionSetsWhatTheOptionItselfSets) {
     outcomes.insert(tests::describe(scene));
     ++swept;
   }
-  EXPECT_EQ(swept, 13u);
+  EXPECT_EQ(swept, 15u);
   EXPECT_EQ(outcomes.size(), swept);  // no two of them set the same
 }
 

@@ -36,7 +36,7 @@ inline Given two_segments_with(const Given& more) {
 
 // Every value of a scene in one text, to compare scenes exactly.
 inline std::string describe(const model::Scene& scene) {
-  const auto& [leg, bandage, fidelity, how] = scene;
+  const auto& [leg, bandage, fidelity, contact_axial, how, axisym] = scene;
   std::string text;
   for (const model::Segment& s : leg.segments) {
     text += fmt::format("{} {} {} {} {} {} {} {}\n", s.name, s.height, s.lower_radius, s.upper_radius,
@@ -52,6 +52,10 @@ inline std::string describe(const model::Scene& scene) {
                       bandage.layers, bandage.breakdown_field);
   text += fmt::format("{} {} {} {} {} {}\n", int(fidelity), int(how.slice_rule), how.slice_count,
                       how.wall_points, int(how.slice_solver), how.fixed_point_tolerance);
+  text +=
+      fmt::format("{} {} {} {} {} {} {}\n", int(contact_axial), how.sliding_count, int(axisym.electrostatics),
+                  int(axisym.multipliers), axisym.order, axisym.refine, axisym.ranks_per_case);
+  text += fmt::format("{} {}\n", leg.shear_modulus, bandage.bulk_modulus);
   return text;
 }
 

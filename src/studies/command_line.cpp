@@ -48,6 +48,8 @@ CommandLine split_command_line(int argc, const char* const* argv) {
 }
 
 Command parse_command(const std::string& word) {
+  if (word.empty())
+    throw base::InputError("a command is missing: solve or sweep; gaiter -help lists the options");
   if (word == "solve") return Command::solve;
   if (word == "sweep") return Command::sweep;
   const std::array<std::string, 2> commands{"solve", "sweep"};

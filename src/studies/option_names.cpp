@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <set>
 
 #include "gaiter/base/text.hpp"
@@ -30,6 +31,30 @@ std::set<std::string, std::less<>> reserved_words() {
   }
   return words;
 }
+
+// PETSc's options that are given most often, to tell what a misspelt one was meant to be.
+constexpr std::array<std::string_view, 20> petsc_options{
+    "log_view",
+    "options_left",
+    "options_view",
+    "slice_ksp_converged_reason",
+    "slice_ksp_monitor",
+    "slice_ksp_rtol",
+    "slice_ksp_type",
+    "slice_ksp_view",
+    "slice_mat_type",
+    "slice_pc_type",
+    "slice_snes_converged_reason",
+    "slice_snes_linesearch_monitor",
+    "slice_snes_linesearch_type",
+    "slice_snes_max_it",
+    "slice_snes_monitor",
+    "slice_snes_rtol",
+    "slice_snes_test_jacobian",
+    "slice_snes_type",
+    "slice_snes_view",
+    "info",
+};
 
 }  // namespace
 
@@ -69,6 +94,10 @@ std::string nearest_option(std::string_view name, std::span<const model::Segment
       continue;
     }
     for (const model::Segment& segment : segments) add(entry, segment.name);
+  }
+  for (const std::string_view given : petsc_options) {
+    candidates.emplace_back(given);
+    if (given.starts_with("slice_")) candidates.push_back("sliding_" + std::string(given.substr(6)));
   }
   std::vector<std::string> lower;
   for (const std::string& candidate : candidates) lower.push_back(base::lower(candidate));

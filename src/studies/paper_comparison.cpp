@@ -167,7 +167,7 @@ void add_finite_elements(const model::Scene& scene, Rows& rows) {
   const double seconds = MPI_Wtime() - start;
   const std::string at_mean = fmt::format("{:.1f} Pa", solve(scene, 0, 2.2, true).pressure_rest);
   rows.add("r6, 2.2: contact pressure at rest, FEM", "6102.8 Pa", fmt::format("{:.1f} Pa", r.pressure_rest),
-           at_mean, "(a), and slices know neither taper nor sliding");
+           at_mean, "(a), and slices do not slide along the taper");
   rows.add("   on the paper's finer mesh", "6091.2 Pa", fmt::format("{:.1f} Pa", r.pressure_rest), at_mean,
            "as above");
   rows.add("volumes, FEM against analytic", "within 2.4 %", "-", "-",

@@ -9,14 +9,12 @@
 #include "gaiter/archive/writer.hpp"
 #include "gaiter/base/error.hpp"
 #include "gaiter/base/version.hpp"
-#include "gaiter/petsc/check.hpp"
-#include "gaiter/petsc/error_capture.hpp"
-#include "gaiter/solvers/slice_solver.hpp"
 #include "gaiter/studies/help.hpp"
 #include "gaiter/studies/paper_comparison.hpp"
 #include "gaiter/studies/result_table.hpp"
 #include "gaiter/studies/scene_options.hpp"
 #include "gaiter/studies/solve.hpp"
+#include "gaiter/studies/solver_options.hpp"
 
 namespace gaiter::studies {
 
@@ -24,41 +22,17 @@ namespace {
 
 constexpr std::size_t most_tables = 10;  // designs of a sweep that are printed one by one
 
-bool starts(const std::string& text, std::string_view with) {
-  return text.rfind(with, 0) == 0;
-}
-
-bool ends(const std::string& text, std::string_view with) {
-  return text.size() >= with.size() && text.compare(text.size() - with.size(), with.size(), with) == 0;
-}
-
-// Options that PETSc asks for only while it solves, or when it ends.
-bool asked_for_later(const std::string& name) {
-  const bool of_solver = starts(name, "slice_snes_") || starts(name, "slice_ksp_") ||
-                         starts(name, "slice_pc_") || starts(name, "slice_mat_");
-  if (of_solver)
-    return ends(name, "_view") || ends(name, "_converged_reason") || name.find("_view_") != std::string::npos;
-  for (const char* prefix : {"log_", "options_", "malloc_", "objects_", "info", "memory_"})
-    if (starts(name, prefix)) return true;
-  return false;
-}
-
-// Options that neither our table nor PETSc knows are misspelt. PETSc's are known by setting a solver up with
-// them.
-void refuse_unknown_options(const petsc::Session& session, const Request& request) {
-  petsc::ErrorCapture quiet;
+// Every rank looks, for each may sit on a machine of its own; all refuse together.
+void check_writable(const std::string& output) {
+  std::string refusal;
   try {
-    solvers::SliceSolver(PETSC_COMM_WORLD, 1, request.scene.discretisation.slice_solver, 1);
-  } catch (const base::InternalError&) {
-    std::string given;
-    for (const std::string& name : request.unknown)
-      if (starts(name, "slice_")) given += " -" + name;
-    throw base::InputError("the solver options" + given +
-                           " are refused by PETSc: " + quiet.message().substr(0, quiet.message().find('\n')));
+    archive::check_writable(output);
+  } catch (const base::InputError& error) {
+    refusal = error.what();
   }
-  const auto unused = session.unused_options();
-  for (const std::string& name : request.unknown)
-    if (unused.count(name) && !asked_for_later(name)) throw unknown_option(name, request.scene.leg.segments);
+  if (petsc::agree(PETSC_COMM_WORLD, refusal.empty())) return;
+  throw base::InputError(!refusal.empty() ? refusal
+                                          : "-output " + output + ": some ranks cannot write there");
 }
 
 archive::Layout layout_of(const Request& request, const Designs& designs) {
@@ -117,14 +91,20 @@ void print_results(const Request& request, const Designs& designs, const Solutio
 
 ExitCode run_program(petsc::Session& session, const CommandLine& line) {
   const bool printing = petsc::rank(PETSC_COMM_WORLD) == 0;
-  if (line.help || line.command.empty()) {
+  if (line.help) {
     if (printing) fmt::print("{}", line.help == "markdown" ? help_markdown() : help_text());
-    return line.help ? success : wrong_input;
+    return success;
   }
   const Command command = parse_command(line.command);
   for (const std::string& file : line.options_files) session.insert_options_file(file);
-  const Request request = parse_request(command, session.unused_options());
-  refuse_unknown_options(session, request);
+  const auto given = session.unused_options();
+  Request request = parse_request(command, given);
+  ForeignOptions foreign;
+  for (const std::string& name : request.unknown) foreign[name] = given.at(name);
+  for (const auto& [name, text] : given)
+    if (!foreign.contains(name)) session.mark_used(name);
+  check_foreign_options(session, request.scene, foreign);
+  request.text += solver_settings(foreign);
   const Designs designs(request.axes);
   if (request.comparison == Comparison::paper) require_paper_segments(request.scene);
   if (request.dry_run) {
@@ -133,7 +113,7 @@ ExitCode run_program(petsc::Session& session, const CommandLine& line) {
                  request.scene.leg.segments.size());
     return success;
   }
-  archive::check_writable(request.output);
+  check_writable(request.output);
 
   const Solution solution = solve_designs(PETSC_COMM_WORLD, request.scene, designs);
   const std::array<double, 7> counts = count_status(PETSC_COMM_WORLD, solution);

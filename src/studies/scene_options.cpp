@@ -164,6 +164,10 @@ void Parser::read_settings() {
     } else if (name == "output") {
       request_.output = base::trim(given.text);
       if (request_.output.empty()) throw value_error(entry, given.name, given.text, "a value is missing");
+    } else if (name == "options_file" || name == "help") {
+      // Those of the command line are taken from it before PETSc sees them.
+      throw InputError(fmt::format("-{} '{}': belongs on the command line, not in an options file",
+                                   given.name, given.text));
     }
   }
   if (request_.output.empty()) request_.output = option("output").default_text;
@@ -359,8 +363,7 @@ void check_scene(const model::Scene& scene) {
                                                  : fmt::format("stretch {}", module.stretch);
       throw InputError(
           fmt::format("-bandage_thickness '{} m': the module on {} ({}) has a reference radius of {:.6g} m, "
-                      "so the wall must "
-                      "be less than {:.6g} m",
+                      "so the wall must be less than {:.6g} m",
                       bandage.thickness, segment.name, size, radius, radius * bandage.thickness / inside));
     }
     const model::Compliance& law = segment.compliance;
@@ -380,11 +383,18 @@ void check_scene(const model::Scene& scene) {
     }
     throw InputError(
         fmt::format("-bandage_ogden_mu '{}' with -bandage_ogden_alpha '{}': the initial shear modulus, half "
-                    "the sum of mu "
-                    "alpha, is {:.6g} Pa; it must be greater than 0 Pa",
+                    "the sum of mu alpha, is {:.6g} Pa; it must be greater than 0 Pa",
                     format_values(option("bandage_ogden_mu"), mu),
                     format_values(option("bandage_ogden_alpha"), alpha), 0.5 * twice_modulus));
   }
+  if (scene.fidelity != model::Fidelity::axisym) return;
+  if (scene.leg.model == model::LegModel::rigid)
+    throw InputError(
+        "-leg_model 'rigid': -fidelity axisym needs a leg that gives way, e.g. a stiff neo_hookean one");
+  if (bandage.bulk_modulus <= twice_modulus)
+    throw InputError(
+        fmt::format("-bandage_bulk_modulus '{} Pa': must be greater than {:.6g} Pa, twice the shear modulus",
+                    bandage.bulk_modulus, twice_modulus));
 }
 
 }  // namespace gaiter::studies

@@ -4,15 +4,39 @@
 #include <type_traits>
 
 #include "gaiter/petsc/session.hpp"
+#include "gaiter/solvers/axisym_model.hpp"
 #include "gaiter/solvers/slice_model.hpp"
+#include "gaiter/solvers/sliding_model.hpp"
 
 namespace gaiter::studies {
 
+namespace {
+
+// Groups of ranks that share a finite element mesh; otherwise every rank is a group of its own.
+class Groups {
+ public:
+  Groups(MPI_Comm comm, int ranks_per_group) {
+    const int rank = petsc::rank(comm);
+    count = (petsc::size(comm) + ranks_per_group - 1) / ranks_per_group;
+    mine = rank / ranks_per_group;
+    MPI_Comm_split(comm, mine, rank, &group);
+  }
+  ~Groups() { MPI_Comm_free(&group); }
+  Groups(const Groups&) = delete;
+  Groups& operator=(const Groups&) = delete;
+
+  MPI_Comm group = MPI_COMM_NULL;
+  std::size_t count = 1, mine = 0;
+};
+
+}  // namespace
+
 Solution solve_designs(MPI_Comm comm, const model::Scene& scene, const Designs& designs) {
+  const bool axisym = scene.fidelity == model::Fidelity::axisym;
+  const Groups groups(comm, axisym ? scene.axisym.ranks_per_case : 1);
   const std::size_t segments = scene.leg.segments.size();
   const std::size_t rows = static_cast<std::size_t>(designs.size()) * segments;
-  const std::size_t rank = petsc::rank(comm), ranks = petsc::size(comm);
-  const std::size_t first = rows * rank / ranks, last = rows * (rank + 1) / ranks;
+  const std::size_t first = rows * groups.mine / groups.count, last = rows * (groups.mine + 1) / groups.count;
 
   const double start = MPI_Wtime();
   std::vector<model::Scene> scenes;
@@ -26,7 +50,16 @@ Solution solve_designs(MPI_Comm comm, const model::Scene& scene, const Designs& 
   for (std::size_t row = first; row < last; ++row)
     tasks.push_back({&scenes[row / segments - first_design], row % segments});
 
-  Solution solution{first, solvers::solve_segments(comm, tasks), 0};
+  // Ranks without tasks take part too, and all scenes have the fidelity of the one given.
+  Solution solution{first, {}, 0};
+  if (axisym)
+    solution.rows = solvers::solve_axisym(groups.group, tasks);
+  else if (scene.fidelity == model::Fidelity::sliding)
+    solution.rows = solvers::solve_sliding(comm, tasks);
+  else
+    solution.rows = solvers::solve_segments(comm, tasks);
+  // Of a group, the first rank keeps the results.
+  if (petsc::rank(groups.group) > 0) solution.rows.clear();
   solution.seconds = petsc::largest(comm, MPI_Wtime() - start);
   return solution;
 }

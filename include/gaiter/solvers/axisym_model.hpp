@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-2-Clause
+#pragma once
+
+#include <mpi.h>
+
+#include <span>
+#include <vector>
+
+#include "gaiter/model/result.hpp"
+#include "gaiter/solvers/slice_model.hpp"
+
+namespace gaiter::solvers {
+
+// The axisymmetric contact model of one segment after the other, each distributed over `comm`; every rank of
+// it gives the same tasks and gets all results. `error_estimate` compares with the mesh one refinement
+// coarser; `iterations` is the most Newton steps of rest or actuated state, steps of a continuation included.
+// @note Collective.
+std::vector<model::SegmentResult> solve_axisym(MPI_Comm comm, std::span<const SegmentTask> tasks);
+
+// Sets the solver of a task up and drops it, so that it asks for all its options. @note Collective.
+void try_axisym(MPI_Comm comm, const SegmentTask& task);
+
+}  // namespace gaiter::solvers

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-2-Clause
+#include "gaiter/solvers/axisym_solver.hpp"
+
+#include <cmath>
+#include <cstring>
+
+#include "gaiter/petsc/check.hpp"
+
+namespace gaiter::solvers {
+
+namespace {
+
+constexpr double longest_step = 0.1;     // of a displacement, over the leg's radius
+constexpr double step_tolerance = 1e-7;  // Newton is quadratic there: what is left is some 1e-14
+constexpr int most_iterations = 40;
+constexpr int most_halvings = 12;
+
+}  // namespace
+
+template <int P>
+AxisymSolver<P>::AxisymSolver(AxisymSystem<P>& system) : system_(system) {
+  petsc::check(create());
+}
+
+template <int P>
+PetscErrorCode AxisymSolver<P>::create() {
+  PetscFunctionBegin;
+  PetscCall(DMCreateGlobalVector(system_.space().plex.get(), residual_.out()));
+  PetscCall(SNESCreate(system_.comm(), snes_.out()));
+  SNES snes = snes_.get();
+  PetscCall(SNESSetOptionsPrefix(snes, "axisym_"));
+  PetscCall(SNESSetFunction(snes, residual_.get(), form_function, this));
+  PetscCall(SNESSetJacobian(snes, system_.matrix(), system_.matrix(), form_jacobian, this));
+  PetscCall(SNESSetTolerances(snes, 0, 0, step_tolerance, most_iterations, -1));
+  PetscCall(SNESSetConvergenceTest(snes, converged, this, nullptr));
+  SNESLineSearch search = nullptr;
+  PetscCall(SNESGetLineSearch(snes, &search));
+  PetscCall(SNESLineSearchSetType(search, SNESLINESEARCHSHELL));
+  PetscCall(SNESLineSearchShellSetUserFunc(search, step, this));
+  KSP ksp = nullptr;
+  PC pc = nullptr;
+  PetscCall(SNESGetKSP(snes, &ksp));
+  PetscCall(KSPSetType(ksp, KSPPREONLY));
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PCSetType(pc, PCCHOLESKY));
+  PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  PetscCall(SNESSetFromOptions(snes));
+  PetscCall(SNESGetTolerances(snes, nullptr, nullptr, &step_tolerance_, nullptr, nullptr));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template <int P>
+AxisymReport AxisymSolver<P>::solve(Vec x) {
+  AxisymReport report;
+  petsc::check(run(x, report));
+  return report;
+}
+
+template <int P>
+PetscErrorCode AxisymSolver<P>::run(Vec x, AxisymReport& report) {
+  PetscFunctionBegin;
+  report_ = {};
+  last_step_ = 0;
+  full_step_ = false;
+  PetscCall(SNESSolve(snes_.get(), nullptr, x));
+  SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
+  PetscInt iterations = 0;
+  PetscCall(SNESGetConvergedReason(snes_.get(), &reason));
+  PetscCall(SNESGetIterationNumber(snes_.get(), &iterations));
+  report = report_;
+  report.converged = reason > 0;
+  report.iterations = static_cast<int>(iterations);
+
+  // The inertia of the last tangent factorised, which is that of the solution but for the last, tiny step.
+  KSP ksp = nullptr;
+  PC pc = nullptr;
+  PetscBool factorised = PETSC_FALSE;
+  PetscCall(SNESGetKSP(snes_.get(), &ksp));
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCCHOLESKY, &factorised));
+  MatSolverType type = nullptr;
+  if (factorised) PetscCall(PCFactorGetMatSolverType(pc, &type));
+  if (report.converged && type && std::strcmp(type, MATSOLVERMUMPS) == 0) {
+    Mat factor = nullptr;
+    PetscInt negative = 0;
+    PetscCall(PCFactorGetMatrix(pc, &factor));
+    PetscCall(MatMumpsGetInfog(factor, 12, &negative));
+    report.inertia_known = true;
+    report.stable = negative == system_.space().pressures + system_.space().multipliers;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template <int P>
+PetscErrorCode AxisymSolver<P>::form_function(SNES snes, Vec x, Vec f, void* context) {
+  PetscFunctionBegin;
+  auto& self = *static_cast<AxisymSolver*>(context);
+  bool admissible = true;
+  const double start = MPI_Wtime();
+  PetscCall(self.system_.evaluate(x, f, admissible));
+  self.report_.assembly_seconds += MPI_Wtime() - start;
+  if (!admissible) PetscCall(SNESSetFunctionDomainError(snes));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template <int P>
+PetscErrorCode AxisymSolver<P>::form_jacobian(SNES, Vec, Mat, Mat, void* context) {
+  PetscFunctionBegin;
+  auto& self = *static_cast<AxisymSolver*>(context);
+  // evaluate() was last called at this x: with the first residual, or with the step taken.
+  const double start = MPI_Wtime();
+  PetscCall(self.system_.assemble());
+  self.report_.assembly_seconds += MPI_Wtime() - start;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template <int P>
+PetscErrorCode AxisymSolver<P>::step(SNESLineSearch search, void* context) {
+  PetscFunctionBegin;
+  auto& self = *static_cast<AxisymSolver*>(context);
+  Vec x = nullptr, f = nullptr, y = nullptr, trial = nullptr;
+  PetscCall(SNESLineSearchGetVecs(search, &x, &f, &y, &trial, nullptr));
+  double largest = 0;
+  PetscCall(self.system_.largest_displacement(y, largest));
+  double length = largest > longest_step ? longest_step / largest : 1;
+  bool admissible = false;
+  const double start = MPI_Wtime();
+  for (int halving = 0; std::isfinite(largest) && halving < most_halvings; ++halving, length *= 0.5) {
+    PetscCall(VecWAXPY(trial, -length, y, x));
+    PetscCall(self.system_.evaluate(trial, f, admissible));
+    if (admissible) break;
+  }
+  self.report_.assembly_seconds += MPI_Wtime() - start;
+  PetscCall(SNESLineSearchSetReason(search,
+                                    admissible ? SNES_LINESEARCH_SUCCEEDED : SNES_LINESEARCH_FAILED_DOMAIN));
+  if (!admissible) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecCopy(trial, x));
+  self.last_step_ = length * largest;
+  self.full_step_ = length == 1;
+  PetscReal x_norm = 0, f_norm = 0, y_norm = 0;
+  PetscCall(VecNorm(x, NORM_2, &x_norm));
+  PetscCall(VecNorm(f, NORM_2, &f_norm));
+  PetscCall(VecNorm(y, NORM_2, &y_norm));
+  PetscCall(SNESLineSearchSetNorms(search, x_norm, f_norm, length * y_norm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template <int P>
+PetscErrorCode AxisymSolver<P>::converged(SNES snes, PetscInt iteration, PetscReal, PetscReal,
+                                          PetscReal residual_norm, SNESConvergedReason* reason,
+                                          void* context) {
+  PetscFunctionBegin;
+  auto& self = *static_cast<AxisymSolver*>(context);
+  *reason = SNES_CONVERGED_ITERATING;
+  if (!std::isfinite(residual_norm))
+    *reason = SNES_DIVERGED_FNORM_NAN;
+  else if (iteration > 0 && self.full_step_ && self.last_step_ < self.step_tolerance_ &&
+           self.system_.active_changes() == 0)
+    *reason = SNES_CONVERGED_SNORM_RELATIVE;
+  PetscCall(
+      PetscInfo(snes, "step %g, contacts changed %d\n", self.last_step_, self.system_.active_changes()));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template class AxisymSolver<2>;
+template class AxisymSolver<3>;
+template class AxisymSolver<4>;
+
+}  // namespace gaiter::solvers
