@@ -5,5 +5,5 @@ add_executable(axisym_reference axisym_reference.cpp session_main.cpp)
 target_link_libraries(axisym_reference PRIVATE gaiter_solvers GTest::gtest)
 foreach(RANKS 1 2 3)
   gaiter_add_test(axisym_reference_on_${RANKS} LABEL cross RANKS ${RANKS} TIMEOUT 300
-                  COMMAND axisym_reference)
+                  COMMAND $<TARGET_FILE:axisym_reference>)
 endforeach()
