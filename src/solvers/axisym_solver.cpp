@@ -46,6 +46,33 @@ PetscErrorCode AxisymSolver<P>::create() {
   PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
   PetscCall(SNESSetFromOptions(snes));
   PetscCall(SNESGetTolerances(snes, nullptr, nullptr, &step_tolerance_, nullptr, nullptr));
+  PetscCall(uses_mumps(&counts_pivots_));
+  if (counts_pivots_) {
+    // MUMPS does not count the negative pivots of a root that it factorises in parallel, and its guess of the
+    // workspace is too small where many pivots have to be delayed.
+    Mat factor = nullptr;
+    PetscCall(KSPSetOperators(ksp, system_.matrix(), system_.matrix()));
+    PetscCall(PCFactorSetUpMatSolverType(pc));
+    PetscCall(PCFactorGetMatrix(pc, &factor));
+    PetscCall(MatMumpsSetIcntl(factor, 13, 1));
+    PetscCall(MatMumpsSetIcntl(factor, 14, 200));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+// Whether the tangent is factorised by MUMPS as a symmetric matrix, options considered.
+template <int P>
+PetscErrorCode AxisymSolver<P>::uses_mumps(bool* yes) const {
+  PetscFunctionBegin;
+  KSP ksp = nullptr;
+  PC pc = nullptr;
+  PetscBool cholesky = PETSC_FALSE;
+  MatSolverType type = nullptr;
+  PetscCall(SNESGetKSP(snes_.get(), &ksp));
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCCHOLESKY, &cholesky));
+  if (cholesky) PetscCall(PCFactorGetMatSolverType(pc, &type));
+  *yes = type && std::strcmp(type, MATSOLVERMUMPS) == 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -71,18 +98,14 @@ PetscErrorCode AxisymSolver<P>::run(Vec x, AxisymReport& report) {
   report.converged = reason > 0;
   report.iterations = static_cast<int>(iterations);
 
-  // The inertia of the last tangent factorised, which is that of the solution but for the last, tiny step.
-  KSP ksp = nullptr;
-  PC pc = nullptr;
-  PetscBool factorised = PETSC_FALSE;
-  PetscCall(SNESGetKSP(snes_.get(), &ksp));
-  PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCCHOLESKY, &factorised));
-  MatSolverType type = nullptr;
-  if (factorised) PetscCall(PCFactorGetMatSolverType(pc, &type));
-  if (report.converged && type && std::strcmp(type, MATSOLVERMUMPS) == 0) {
+  if (report.converged && counts_pivots_) {
+    // The inertia of the last tangent factorised, which is that of the solution but for the last, tiny step.
+    KSP ksp = nullptr;
+    PC pc = nullptr;
     Mat factor = nullptr;
     PetscInt negative = 0;
+    PetscCall(SNESGetKSP(snes_.get(), &ksp));
+    PetscCall(KSPGetPC(ksp, &pc));
     PetscCall(PCFactorGetMatrix(pc, &factor));
     PetscCall(MatMumpsGetInfog(factor, 12, &negative));
     report.inertia_known = true;

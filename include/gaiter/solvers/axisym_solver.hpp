@@ -35,6 +35,7 @@ class AxisymSolver {
   static PetscErrorCode converged(SNES snes, PetscInt iteration, PetscReal x_norm, PetscReal step_norm,
                                   PetscReal residual_norm, SNESConvergedReason* reason, void* context);
   PetscErrorCode create();
+  PetscErrorCode uses_mumps(bool* yes) const;
   PetscErrorCode run(Vec x, AxisymReport& report);
 
   AxisymSystem<P>& system_;
@@ -42,7 +43,7 @@ class AxisymSolver {
   petsc::Snes snes_;
   double step_tolerance_ = 0;
   double last_step_ = 0;  // largest displacement of the last step taken, over the leg's radius
-  bool full_step_ = false;
+  bool full_step_ = false, counts_pivots_ = false;
   AxisymReport report_;
 };
 
