@@ -16,7 +16,7 @@ ROW = np.arange(CASES * len(SEGMENTS)).reshape(SHAPE)
 REALS = {
     "pressure_rest": "Pa", "pressure_actuated": "Pa", "pressure_rest_rigid": "Pa",
     "pressure_actuated_rigid": "Pa", "pressure_rest_area_mean": "Pa", "pressure_actuated_area_mean": "Pa",
-    "actuation_drop": "Pa", "actuation_pressure": "Pa", "volume_initial": "m3", "volume_rest": "m3",
+    "pressure_rest_change": "1", "pressure_actuated_change": "1", "actuation_drop": "Pa", "actuation_pressure": "Pa", "volume_initial": "m3", "volume_rest": "m3",
     "volume_actuated": "m3", "volume_change": "1", "radius_actuated": "m", "stretch_actual": "1", "slip_max": "m",
     "electric_field_max": "V m-1", "error_estimate": "1",
 }

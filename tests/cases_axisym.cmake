@@ -3,7 +3,7 @@ gaiter_unit_test(axisym_energy LABEL jacobian USES physics)
 
 add_executable(axisym_reference axisym_reference.cpp session_main.cpp)
 target_link_libraries(axisym_reference PRIVATE gaiter_solvers GTest::gtest)
-foreach(RANKS 1 2 3)
+foreach(RANKS 1 2)
   gaiter_add_test(axisym_reference_on_${RANKS} LABEL cross RANKS ${RANKS} TIMEOUT 300
                   COMMAND $<TARGET_FILE:axisym_reference>)
 endforeach()

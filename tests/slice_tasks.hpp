@@ -14,7 +14,7 @@
 namespace gaiter::tasks {
 
 // All numbers of a result, so that two can be compared bit by bit and sent over ranks.
-constexpr int fields = 20;
+constexpr int fields = 22;
 using Numbers = std::array<double, fields>;
 
 inline Numbers numbers_of(const model::SegmentResult& r) {
@@ -37,7 +37,9 @@ inline Numbers numbers_of(const model::SegmentResult& r) {
           static_cast<double>(r.iterations),
           static_cast<double>(r.status),
           static_cast<double>(r.fidelity),
-          0};
+          r.slip_max,
+          r.pressure_rest_change,
+          r.pressure_actuated_change};
 }
 
 inline bool same_bits(const Numbers& a, const Numbers& b) {

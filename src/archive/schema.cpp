@@ -34,6 +34,14 @@ constexpr std::array table{
            "normal force of the bandage under voltage over the deformed area of its whole inner face, parts "
            "that do not touch the leg included",
            &Row::pressure_actuated_area_mean},
+    Column{
+        "pressure_rest_change", "1",
+        "relative fall of pressure_rest because the leg gives way: 1 - pressure_rest / pressure_rest_rigid",
+        &Row::pressure_rest_change},
+    Column{"pressure_actuated_change", "1",
+           "relative fall of pressure_actuated because the leg gives way: 1 - pressure_actuated / "
+           "pressure_actuated_rigid",
+           &Row::pressure_actuated_change},
     Column{"actuation_drop", "Pa",
            "fall of the interface pressure by the voltage, pressure_rest minus pressure_actuated",
            &Row::actuation_drop},

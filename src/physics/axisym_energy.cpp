@@ -84,7 +84,8 @@ Jet<N> tube_energy(const TubeMaterial& material, const Deformation<N>& f, const 
     energy -= (0.5 / (material.bulk_modulus - material.stabilisation)) * (pressure * pressure);
   for (const model::OgdenTerm& term : material.ogden) {
     const Jet<N> sum = in_plane_powers(f, term.alpha) + power(f.t, term.alpha);
-        // Isochoric stretches make p the mean stress of a compressible tube. Without compressibility p takes that part up,
+    // Isochoric stretches make p the mean stress of a compressible tube. Without compressibility p takes that
+    // part up,
     // and the plain stretches let Newton's method converge from much further away.
     energy += (term.mu / term.alpha) * ((compressible ? power(volume, -term.alpha / 3) * sum : sum) - 3.0);
   }

@@ -27,7 +27,8 @@ model::SegmentResult summarise(std::span<const SliceOutcome> slices, const Quadr
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   if (!model::trustworthy(result.status)) {
     result.pressure_rest = result.pressure_actuated = result.pressure_rest_area_mean = none;
-    result.pressure_actuated_area_mean = result.actuation_drop = result.actuation_pressure = none;
+    result.pressure_actuated_area_mean = result.actuation_pressure = none;
+    model::derive_changes(result);
     result.volume_rest = result.volume_actuated = result.volume_change = result.radius_actuated = none;
     result.stretch_actual = result.electric_field_max = result.error_estimate = none;
     return result;
@@ -40,7 +41,7 @@ model::SegmentResult summarise(std::span<const SliceOutcome> slices, const Quadr
   result.pressure_actuated_area_mean =
       mean([](const auto& s) { return s.pressure_actuated * s.radius_actuated; }) /
       mean([](const auto& s) { return s.bandage_radius_actuated; });
-  result.actuation_drop = result.pressure_rest - result.pressure_actuated;
+  model::derive_changes(result);
   result.actuation_pressure = mean([](const auto& s) { return s.actuation_pressure; });
   result.volume_rest = height * mean([&](const auto& s) { return square(s.radius_rest); });
   result.volume_actuated = height * mean([&](const auto& s) { return square(s.radius_actuated); });

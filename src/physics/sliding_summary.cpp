@@ -71,7 +71,8 @@ model::SegmentResult summarise_sliding(const SlidingOutcome& outcome, double hei
   if (!model::trustworthy(result.status)) {
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
     result.pressure_rest = result.pressure_actuated = result.pressure_rest_area_mean = none;
-    result.pressure_actuated_area_mean = result.actuation_drop = result.actuation_pressure = none;
+    result.pressure_actuated_area_mean = result.actuation_pressure = none;
+    model::derive_changes(result);
     result.volume_rest = result.volume_actuated = result.volume_change = result.radius_actuated = none;
     result.stretch_actual = result.slip_max = result.electric_field_max = result.error_estimate = none;
     return result;
@@ -81,7 +82,7 @@ model::SegmentResult summarise_sliding(const SlidingOutcome& outcome, double hei
   result.pressure_actuated = height_mean_pressure(actuated);
   result.pressure_rest_area_mean = area_mean_pressure(rest);
   result.pressure_actuated_area_mean = area_mean_pressure(actuated);
-  result.actuation_drop = result.pressure_rest - result.pressure_actuated;
+  model::derive_changes(result);
   result.actuation_pressure = height_mean(actuated, [](const auto& s) { return s.actuation_pressure; });
   // Formed from the differences of the radii, which a small change needs.
   const auto loss = [&](const std::vector<SlidingSlice>& slices) {

@@ -338,7 +338,7 @@ model::SegmentResult solve_task(MPI_Comm comm, const SegmentTask& task) {
   result.pressure_actuated = put(fine.actuated.pressure * unit);
   result.pressure_rest_area_mean = put(fine.rest.pressure_area * unit);
   result.pressure_actuated_area_mean = put(fine.actuated.pressure_area * unit);
-  result.actuation_drop = result.pressure_rest - result.pressure_actuated;
+  model::derive_changes(result);
   result.actuation_pressure = put(fine.actuated.maxwell * unit);
   result.volume_rest = put(fine.rest.volume * volume);
   result.volume_actuated = put(fine.actuated.volume * volume);

@@ -39,11 +39,6 @@ model::SegmentResult solve(model::Scene scene, std::size_t segment, double stret
   return solvers::solve_segments(PETSC_COMM_SELF, {&task, 1})[0];
 }
 
-// Fall of the total pressure because the leg gives way, relative.
-double pressure_change(const model::SegmentResult& r) {
-  return 1 - r.pressure_actuated / r.pressure_actuated_rigid;
-}
-
 // The stretch at which measure(result) = 0; none in the range: NaN.
 template <typename Measure>
 double find_stretch(const model::Scene& scene, std::size_t segment, bool at_mean_radius, Measure&& measure) {
@@ -92,9 +87,9 @@ void add_pressures(const model::Scene& scene, Rows& rows) {
   row("r6, 2.2: total pressure, compliant leg", "5.82 kPa",
       both(0, 2.2, [](const auto& r) { return kpa(r.pressure_actuated); }), elastomer);
   row("r6, 2.2: change of total pressure (largest)", "9.7 %",
-      both(0, 2.2, [](const auto& r) { return percent(pressure_change(r)); }), "(a), (b)");
+      both(0, 2.2, [](const auto& r) { return percent(r.pressure_actuated_change); }), "(a), (b)");
   row("r3, 2.2: change (second largest)", "7.1 %",
-      both(3, 2.2, [](const auto& r) { return percent(pressure_change(r)); }), elastomer);
+      both(3, 2.2, [](const auto& r) { return percent(r.pressure_actuated_change); }), elastomer);
   row("r6, 2.2: initial mechanical pressure", "6.70 kPa",
       both(0, 2.2, [](const auto& r) { return kpa(r.pressure_rest_rigid); }), elastomer);
 
@@ -113,7 +108,7 @@ void add_pressures(const model::Scene& scene, Rows& rows) {
   bool always = true;
   for (double stretch : stretches) {
     std::array<double, 6> change{};
-    for (std::size_t s = 0; s < 6; ++s) change[s] = pressure_change(solve(scene, s, stretch, false));
+    for (std::size_t s = 0; s < 6; ++s) change[s] = solve(scene, s, stretch, false).pressure_actuated_change;
     always = always && std::min_element(change.begin(), change.end()) == change.begin() + 2;
   }
   rows.add("smallest change at every stretch", "region 4", always ? "region 4" : "not always", "",
@@ -125,7 +120,7 @@ void add_pressures(const model::Scene& scene, Rows& rows) {
     std::array<std::string, 2> at;
     for (bool mean : {false, true}) {
       const double stretch =
-          find_stretch(scene, segment, mean, [](const auto& r) { return pressure_change(r) - 0.05; });
+          find_stretch(scene, segment, mean, [](const auto& r) { return r.pressure_actuated_change - 0.05; });
       at[mean] =
           std::isnan(stretch) ? "not reached" : kpa(solve(scene, segment, stretch, mean).pressure_rest_rigid);
     }

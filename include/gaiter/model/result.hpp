@@ -29,20 +29,33 @@ struct SegmentResult {
   double pressure_actuated_rigid = 0;      // [Pa]
   double pressure_rest_area_mean = 0;      // normal force over the deformed area of the inner face [Pa]
   double pressure_actuated_area_mean = 0;  // [Pa]
-  double actuation_drop = 0;               // pressure_rest - pressure_actuated [Pa]
-  double actuation_pressure = 0;           // P_a of Eq. (8) at the actuated radius, height average [Pa]
-  double volume_initial = 0;               // of the leg [m3]
-  double volume_rest = 0;                  // [m3]
-  double volume_actuated = 0;              // [m3]
-  double volume_change = 0;                // (initial - actuated) / initial, Eq. (10) [1]
-  double radius_actuated = 0;              // of the leg, height average [m]
-  double stretch_actual = 0;               // at rest, once the leg has given way, height average [1]
-  double slip_max = 0;                     // largest |z - Z| of the tube, at rest or actuated [m]
-  double electric_field_max = 0;           // true field, at the inner face of a layer [V/m]
-  double error_estimate = 0;               // relative error of the pressures, estimated [1]
-  int iterations = 0;                      // Newton or fixed-point steps, the most of any slice
+  double pressure_rest_change = 0;      // of pressure_rest, because the leg gives way: 1 - with / without [1]
+  double pressure_actuated_change = 0;  // of pressure_actuated, likewise [1]
+  double actuation_drop = 0;            // pressure_rest - pressure_actuated [Pa]
+  double actuation_pressure = 0;        // P_a of Eq. (8) at the actuated radius, height average [Pa]
+  double volume_initial = 0;            // of the leg [m3]
+  double volume_rest = 0;               // [m3]
+  double volume_actuated = 0;           // [m3]
+  double volume_change = 0;             // (initial - actuated) / initial, Eq. (10) [1]
+  double radius_actuated = 0;           // of the leg, height average [m]
+  double stretch_actual = 0;            // at rest, once the leg has given way, height average [1]
+  double slip_max = 0;                  // largest |z - Z| of the tube, at rest or actuated [m]
+  double electric_field_max = 0;        // true field, at the inner face of a layer [V/m]
+  double error_estimate = 0;            // relative error of the pressures, estimated [1]
+  int iterations = 0;                   // Newton or fixed-point steps, the most of any slice
   Status status = Status::contact;
   Fidelity fidelity = Fidelity::slice;
 };
+
+// Fills in what follows from the pressures: their changes and the actuation drop. Without pressure there is
+// no change.
+inline void derive_changes(SegmentResult& result) {
+  const auto change = [](double with, double without) {
+    return without != 0 ? 1 - with / without : with - without;
+  };
+  result.pressure_rest_change = change(result.pressure_rest, result.pressure_rest_rigid);
+  result.pressure_actuated_change = change(result.pressure_actuated, result.pressure_actuated_rigid);
+  result.actuation_drop = result.pressure_rest - result.pressure_actuated;
+}
 
 }  // namespace gaiter::model

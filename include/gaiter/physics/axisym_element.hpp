@@ -8,8 +8,9 @@
 
 // Elements of the axisymmetric bodies: total Lagrangian quadrilaterals with straight sides in the (R, Z) half
 // plane. Displacement: tensor Lagrange of order P on Gauss-Lobatto nodes; pressure, for the tube:
-// discontinuous, products of Legendre polynomials of degree up to P - 1 in all (inf-sup stable). All integrals over the reference
-// volume 2 pi R dR dZ. Lengths and stresses may be in any unit, as long as it is one.
+// discontinuous, products of Legendre polynomials of degree up to P - 1 in all (inf-sup stable). All
+// integrals over the reference volume 2 pi R dR dZ. Lengths and stresses may be in any unit, as long as it is
+// one.
 namespace gaiter::physics {
 
 template <int P>

@@ -25,9 +25,11 @@ struct Deformation {
 template <int N>
 Jet<N> in_plane_powers(const Deformation<N>& f, double alpha);
 
-// Elastomer: Ogden, pressure field p, bulk modulus K, and the stabilising term kappa/2 (J - 1)^2, which removes
-// one-element folds that the mixed element would otherwise have at large stretch, and which a finite K absorbs:
-//   W = sum mu/alpha (sum_i (J^{-1/3} lambda_i)^alpha - 3) + p (J - 1) - p^2 / (2 (K - kappa)) + kappa/2 (J - 1)^2.
+// Elastomer: Ogden, pressure field p, bulk modulus K, and the stabilising term kappa/2 (J - 1)^2, which
+// removes one-element folds that the mixed element would otherwise have at large stretch, and which a finite
+// K absorbs:
+//   W = sum mu/alpha (sum_i (J^{-1/3} lambda_i)^alpha - 3) + p (J - 1) - p^2 / (2 (K - kappa)) + kappa/2 (J -
+//   1)^2.
 // For infinite K the stretches stay plain (no J^{-1/3}), so p is then not the mean stress but less than it by
 // sum mu (lambda_1^alpha + lambda_2^alpha + lambda_3^alpha)/3.
 struct TubeMaterial {
