@@ -11,7 +11,7 @@ struct AxisymReport {
   bool stable = true;  // the tangent has as many negative pivots as pressures and multipliers (where known)
   bool inertia_known = false;
   int iterations = 0;
-  double assembly_seconds = 0, factor_seconds = 0;
+  double assembly_seconds = 0;  // of the whole solve, residuals and tangents
 };
 
 // Newton's method for an AxisymSystem: SNES with prefix axisym_, by default MUMPS' symmetric factorisation
