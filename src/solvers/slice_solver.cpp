@@ -98,7 +98,11 @@ PetscErrorCode SliceSolver::create(MPI_Comm comm, std::size_t packs) {
 
 PetscErrorCode SliceSolver::create_matrix(MPI_Comm comm, PetscInt rows) {
   PetscFunctionBegin;
+  // Differences of the residual need entries to go to.
+  PetscBool by_differences = PETSC_FALSE;
+  PetscCall(PetscOptionsGetBool(nullptr, "slice_", "-snes_fd", &by_differences, nullptr));
   char type[64] = MATSHELL;
+  if (by_differences) PetscCall(PetscStrncpy(type, MATAIJ, sizeof type));
   PetscCall(PetscOptionsGetString(nullptr, "slice_", "-mat_type", type, sizeof type, nullptr));
   PetscBool shell = PETSC_FALSE;
   PetscCall(PetscStrcmp(type, MATSHELL, &shell));

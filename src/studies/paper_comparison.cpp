@@ -166,9 +166,9 @@ void add_finite_elements(const model::Scene& scene, Rows& rows) {
   rows.add("   on the paper's finer mesh", "6091.2 Pa", fmt::format("{:.1f} Pa", r.pressure_rest), at_mean,
            "as above");
   rows.add("volumes, FEM against analytic", "within 2.4 %", "-", "-",
-           "needs the finite elements, not in this version");
+           "not compared yet: see -fidelity axisym");
   rows.add("r6, 1.4: total pressure, FEM against analytic", "within 2.9 %", "-", "-",
-           "needs the finite elements, not in this version");
+           "not compared yet: see -fidelity axisym");
   rows.add("one case, 8 cores (FEM) / one core (slices)", "5.5 to 9.5 h",
            fmt::format("{:.2g} ms", 1000 * seconds), "", "an equation a slice instead of a 3-D mesh");
 }
