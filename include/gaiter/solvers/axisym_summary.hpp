@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-2-Clause
+#pragma once
+
+#include "gaiter/solvers/axisym_system.hpp"
+
+namespace gaiter::solvers {
+
+// What a state says of a segment. Lengths over mesh.length, stresses over materials().stress; of a state that
+// did not converge only the first line.
+struct AxisymSummary {
+  bool converged = false, stable = true;
+  int iterations = 0;
+  double pressure = 0;          // height average
+  double pressure_area = 0;     // normal force over the deformed area of the tube's inner face
+  double volume = 0;            // of the leg
+  double radius = 0;            // of the leg's surface, height average
+  double stretch = 0;           // inner radius of the tube over the module's reference radius, height average
+  double slip = 0;              // largest |z - Z| of the tube's inner face
+  double field = 0;             // largest, times mesh.length over the voltage
+  double maxwell = 0;           // P_a of Eq. (8), height average
+  double highest_pressure = 0;  // away from the ends, where pressures are singular
+  bool open_somewhere = false, open_everywhere = false;  // where the tube does not touch
+};
+
+// The state that the system was last evaluated at, which is converged. `energised`: under voltage.
+template <int P>
+AxisymSummary summarise_axisym(const model::Scene& scene, std::size_t segment, const AxisymSystem<P>& system,
+                               bool energised);
+
+}  // namespace gaiter::solvers
