@@ -67,7 +67,9 @@ void scatter(const typename AxisymElement<P>::Geometry& geometry, int point, con
              double weight, int unknowns, double* residual, double* tangent) {
   constexpr int nodes = AxisymElement<P>::nodes;
   constexpr int pressures = N > components ? AxisymElement<P>::pressures : 0;
-  constexpr int most = 2 * nodes + AxisymElement<P>::pressures;
+  constexpr int potentials = N > components + 1 ? nodes : 0;
+  constexpr int first_potential = 2 * nodes + pressures;
+  constexpr int most = AxisymElement<P>::charged_unknowns;
   // Derivative of the components with respect to each unknown: at most three are not zero.
   std::array<std::array<double, N>, most> product;  // tangent of the energy times it
   const auto& d_R = geometry.d_R[point];
@@ -82,7 +84,11 @@ void scatter(const typename AxisymElement<P>::Geometry& geometry, int point, con
       product[2 * a + 1][i] = second[i][2] * d_R[a] + second[i][3] * d_Z[a];
     }
   for (int q = 0; q < pressures; ++q)
-    for (int i = 0; i < N; ++i) product[2 * nodes + q][i] = second[i][N - 1] * geometry.pressure[point][q];
+    for (int i = 0; i < N; ++i)
+      product[2 * nodes + q][i] = second[i][components] * geometry.pressure[point][q];
+  for (int a = 0; a < potentials; ++a)
+    for (int i = 0; i < N; ++i)
+      product[first_potential + a][i] = second[i][N - 2] * d_R[a] + second[i][N - 1] * d_Z[a];
   for (int a = 0; a < nodes; ++a) {
     const auto& g = energy.gradient;
     residual[2 * a] += weight * (g[0] * d_R[a] + g[1] * d_Z[a] + g[4] * over_R[a]);
@@ -95,9 +101,15 @@ void scatter(const typename AxisymElement<P>::Geometry& geometry, int point, con
     }
   }
   for (int q = 0; q < pressures; ++q) {
-    residual[2 * nodes + q] += weight * energy.gradient[N - 1] * geometry.pressure[point][q];
+    residual[2 * nodes + q] += weight * energy.gradient[components] * geometry.pressure[point][q];
     double* row = tangent + (2 * nodes + q) * unknowns;
-    for (int b = 0; b < unknowns; ++b) row[b] += product[b][N - 1] * geometry.pressure[point][q];
+    for (int b = 0; b < unknowns; ++b) row[b] += product[b][components] * geometry.pressure[point][q];
+  }
+  for (int a = 0; a < potentials; ++a) {
+    residual[first_potential + a] +=
+        weight * (energy.gradient[N - 2] * d_R[a] + energy.gradient[N - 1] * d_Z[a]);
+    double* row = tangent + (first_potential + a) * unknowns;
+    for (int b = 0; b < unknowns; ++b) row[b] += product[b][N - 2] * d_R[a] + product[b][N - 1] * d_Z[a];
   }
 }
 
@@ -161,7 +173,7 @@ typename AxisymElement<P>::Geometry AxisymElement<P>::geometry(
 
 template <int P>
 bool AxisymElement<P>::tube(const Geometry& geometry, const TubeMaterial& material, const double* unknowns,
-                            const Field* field, double& energy, double* residual, double* tangent) {
+                            double& energy, double* residual, double* tangent) {
   constexpr int N = components + 1;
   std::fill_n(residual, tube_unknowns, 0.0);
   std::fill_n(tangent, tube_unknowns * tube_unknowns, 0.0);
@@ -172,13 +184,41 @@ bool AxisymElement<P>::tube(const Geometry& geometry, const TubeMaterial& materi
     double pressure = 0;
     for (int q = 0; q < pressures; ++q) pressure += geometry.pressure[point][q] * unknowns[2 * nodes + q];
     const auto jets = as_jets<N>(f);
-    Jet<N> stored = tube_energy(material, jets, Jet<N>::variable(pressure, components));
-    if (field)
-      stored += electric_energy(material.permittivity, jets, Jet<N>((*field)[point][0]),
-                                Jet<N>((*field)[point][1]));
+    const Jet<N> stored = tube_energy(material, jets, Jet<N>::variable(pressure, components));
     if (!std::isfinite(stored.value)) return false;
     energy += geometry.weight[point] * stored.value;
     scatter<P, N>(geometry, point, stored, geometry.weight[point], tube_unknowns, residual, tangent);
+  }
+  return true;
+}
+
+template <int P>
+bool AxisymElement<P>::charged_tube(const Geometry& geometry, const TubeMaterial& material, double share,
+                                    const double* unknowns, double& energy, double* residual,
+                                    double* tangent) {
+  constexpr int N = components + 3;
+  std::fill_n(residual, charged_unknowns, 0.0);
+  std::fill_n(tangent, charged_unknowns * charged_unknowns, 0.0);
+  energy = 0;
+  for (int point = 0; point < points; ++point) {
+    const auto f = deformation<P>(geometry, point, unknowns);
+    if (!admissible(f)) return false;
+    double pressure = 0, d_R = 0, d_Z = 0;
+    for (int q = 0; q < pressures; ++q) pressure += geometry.pressure[point][q] * unknowns[2 * nodes + q];
+    for (int a = 0; a < nodes; ++a) {
+      d_R += geometry.d_R[point][a] * unknowns[tube_unknowns + a];
+      d_Z += geometry.d_Z[point][a] * unknowns[tube_unknowns + a];
+    }
+    const auto jets = as_jets<N>(f);
+    const auto phi_R = Jet<N>::variable(d_R, components + 1), phi_Z = Jet<N>::variable(d_Z, components + 2);
+    Jet<N> stored = tube_energy(material, jets, Jet<N>::variable(pressure, components));
+    if (share > 0)
+      stored += electric_energy(share * material.permittivity, jets, phi_R, phi_Z);
+    else
+      stored -= (0.5 * material.permittivity) * (phi_R * phi_R + phi_Z * phi_Z);
+    if (!std::isfinite(stored.value)) return false;
+    energy += geometry.weight[point] * stored.value;
+    scatter<P, N>(geometry, point, stored, geometry.weight[point], charged_unknowns, residual, tangent);
   }
   return true;
 }

@@ -32,11 +32,17 @@ AxisymCase<P>::AxisymCase(MPI_Comm comm, const model::Scene& scene, std::size_t 
     : scene_(scene), segment_(segment) {
   AxisymResolution resolution;
   resolution.refinements = refinements;
+  SpaceChoice choice;
+  choice.multipliers_on_tube = scene.axisym.multipliers == model::ContactSide::tube;
+  choice.held = scene.contact_axial == model::ContactAxial::held;
+  if (scene.axisym.electrostatics == model::Electrostatics::field &&
+      scene.bandage.modules[segment].voltage != 0) {
+    choice.layers = scene.bandage.layers;
+    resolution.tube_columns = choice.layers * ((resolution.tube_columns + choice.layers - 1) / choice.layers);
+  }
   AxisymMesh mesh = make_axisym_mesh(scene, segment, segment, resolution);
   const double length = mesh.length;
-  auto space =
-      AxisymSpace<P>::make(comm, std::move(mesh), scene.axisym.multipliers == model::ContactSide::tube,
-                           scene.contact_axial == model::ContactAxial::held);
+  auto space = AxisymSpace<P>::make(comm, std::move(mesh), choice);
   system_ = std::make_unique<AxisymSystem<P>>(comm, std::move(space), materials(length));
   solver_ = std::make_unique<AxisymSolver<P>>(*system_);
   petsc::check(DMCreateGlobalVector(system_->space().plex.get(), x_.out()));
@@ -55,15 +61,13 @@ AxisymSummary AxisymCase<P>::rest() {
 template <int P>
 AxisymSummary AxisymCase<P>::actuated() {
   if (scene_.axisym.electrostatics == model::Electrostatics::off) return summarise({true}, 0, false);
-  const auto full = radial_field<P>(scene_, *system_, states(true));
   int iterations = 0;
-  // The field enters squared: equal steps of its square.
   double reached = 0, step = 1;
   AxisymReport report;
   for (int k = 0; reached < 1 && k < most_path_steps && step > 1e-3; ++k) {
     petsc::check(VecCopy(x_.get(), kept_.get()));
     const double target = std::min(1.0, reached + step);
-    set_field(full, std::sqrt(target));
+    system_->energise(target);
     report = solver_->solve(x_.get());
     iterations += report.iterations;
     if (good(report)) {
@@ -85,6 +89,7 @@ AxisymMaterials AxisymCase<P>::materials(double length) const {
   for (const auto& term : scene_.bandage.ogden) result.tube.ogden.push_back({term.mu / unit, term.alpha});
   result.tube.bulk_modulus = scene_.bandage.bulk_modulus / unit;
   result.tube.stabilisation = 1;
+  result.tube.layers = scene_.bandage.layers;
   result.tube.permittivity =
       vacuum_permittivity * scene_.bandage.permittivity * voltage * voltage / (length * length * unit);
   for (const model::Segment& segment : scene_.leg.segments) {
@@ -110,14 +115,6 @@ std::vector<RadialState> AxisymCase<P>::states(bool actuated) const {
   add(system_->space().tubes[0]);
   add(system_->space().leg);
   return result;
-}
-
-template <int P>
-void AxisymCase<P>::set_field(std::vector<typename physics::AxisymElement<P>::Field> field, double factor) {
-  for (auto& cell : field)
-    for (auto& gradient : cell)
-      for (double& component : gradient) component *= factor;
-  system_->set_field(std::move(field));
 }
 
 // From the tube held at its heights, where the slices are all but right, to the free one.

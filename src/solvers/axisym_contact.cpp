@@ -26,14 +26,15 @@ physics::ContactJet<P> AxisymSystem<P>::segment_potential(int tube, const physic
     leg_edge.r[i] = leg_.radius[P * segment.leg_edge + i];
     leg_edge.z[i] = leg_.height[P * segment.leg_edge + i];
   }
-  const SurfaceState& carrier = space_.multipliers_on_tube ? tubes_[tube] : leg_;
-  const int edge = space_.multipliers_on_tube ? segment.tube_edge : segment.leg_edge;
+  const SurfaceState& carrier = space_.choice.multipliers_on_tube ? tubes_[tube] : leg_;
+  const int edge = space_.choice.multipliers_on_tube ? segment.tube_edge : segment.leg_edge;
   std::array<double, 2> multipliers{};
   for (int k = 0; k < 2; ++k) {
     const int node = P * (edge + k);
     multipliers[k] = effective && !carrier.active[node] ? 0 : carrier.multiplier[node];
   }
-  return physics::contact_potential<P>(tube_edge, leg_edge, multipliers, space_.multipliers_on_tube, segment);
+  return physics::contact_potential<P>(tube_edge, leg_edge, multipliers, space_.choice.multipliers_on_tube,
+                                       segment);
 }
 
 // Every rank works all segments out, which are few, and adds its share of the pairs.
@@ -61,7 +62,7 @@ PetscErrorCode AxisymSystem<P>::add_contact(Vec residual, bool& admissible) {
 
   // Gap volumes G and hat areas, hence the active set.
   std::vector<SurfaceState*> carriers;
-  if (space_.multipliers_on_tube)
+  if (space_.choice.multipliers_on_tube)
     for (SurfaceState& tube : tubes_) carriers.push_back(&tube);
   else
     carriers.push_back(&leg_);
@@ -76,8 +77,8 @@ PetscErrorCode AxisymSystem<P>::add_contact(Vec residual, bool& admissible) {
   for (std::size_t t = 0; t < tubes_.size(); ++t)
     for (const auto& segment : segments[t]) {
       const auto potential = segment_potential(static_cast<int>(t), segment, false);
-      const std::size_t c = space_.multipliers_on_tube ? t : 0;
-      const int edge = space_.multipliers_on_tube ? segment.tube_edge : segment.leg_edge;
+      const std::size_t c = space_.choice.multipliers_on_tube ? t : 0;
+      const int edge = space_.choice.multipliers_on_tube ? segment.tube_edge : segment.leg_edge;
       for (int k = 0; k < 2; ++k) {
         carriers[c]->gap[P * (edge + k)] -= potential.gradient[4 * (P + 1) + k];
       }
@@ -99,8 +100,8 @@ PetscErrorCode AxisymSystem<P>::add_contact(Vec residual, bool& admissible) {
       if (pair % ranks != rank) continue;
       const auto potential = segment_potential(static_cast<int>(t), segment, true);
       const std::vector<PetscInt> unknowns = unknowns_of(pairs_[pair]);
-      const SurfaceState& carrier = space_.multipliers_on_tube ? tubes_[t] : leg_;
-      const int edge = space_.multipliers_on_tube ? segment.tube_edge : segment.leg_edge;
+      const SurfaceState& carrier = space_.choice.multipliers_on_tube ? tubes_[t] : leg_;
+      const int edge = space_.choice.multipliers_on_tube ? segment.tube_edge : segment.leg_edge;
       std::array<double, pair_unknowns> forces = potential.gradient;
       const auto silent = [&](int i) {
         return i >= 4 * (P + 1) && !carrier.active[P * (edge + i - 4 * (P + 1))];
@@ -135,30 +136,8 @@ PetscErrorCode AxisymSystem<P>::add_contact(Vec residual, bool& admissible) {
     PetscFunctionReturn(PETSC_SUCCESS);
   };
   for (std::size_t t = 0; t < tubes_.size(); ++t)
-    PetscCall(silence(tubes_[t], space_.multipliers_on_tube ? &area[t] : nullptr));
-  PetscCall(silence(leg_, space_.multipliers_on_tube ? nullptr : &area[0]));
-  PetscCall(VecAssemblyBegin(residual));
-  PetscCall(VecAssemblyEnd(residual));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-template <int P>
-PetscErrorCode AxisymSystem<P>::add_spring(Vec residual) {
-  PetscFunctionBegin;
-  std::size_t place = first_spring_value_;
-  const int rank = petsc::rank(comm_), ranks = petsc::size(comm_);
-  for (std::size_t t = 0; t < tubes_.size(); ++t) {
-    const auto& nodes = space_.tubes[t].nodes;
-    for (std::size_t i = rank; i < nodes.size(); i += ranks, ++place) {
-      if (spring_ == 0 || nodes[i].u_z < 0) continue;
-      const double below = nodes[i].height - nodes[std::max<std::size_t>(i, 1) - 1].height;
-      const double above = nodes[std::min(i + 1, nodes.size() - 1)].height - nodes[i].height;
-      const double stiffness = spring_ * 0.5 * (below + above), slip = tubes_[t].height[i] - nodes[i].height;
-      values_[place] = stiffness;
-      energy_ += 0.5 * stiffness * slip * slip;
-      PetscCall(VecSetValue(residual, nodes[i].u_z, stiffness * slip, ADD_VALUES));
-    }
-  }
+    PetscCall(silence(tubes_[t], space_.choice.multipliers_on_tube ? &area[t] : nullptr));
+  PetscCall(silence(leg_, space_.choice.multipliers_on_tube ? nullptr : &area[0]));
   PetscCall(VecAssemblyBegin(residual));
   PetscCall(VecAssemblyEnd(residual));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -167,14 +146,11 @@ PetscErrorCode AxisymSystem<P>::add_spring(Vec residual) {
 template physics::ContactJet<2> AxisymSystem<2>::segment_potential(int, const physics::ContactSegment&,
                                                                    bool) const;
 template PetscErrorCode AxisymSystem<2>::add_contact(Vec, bool&);
-template PetscErrorCode AxisymSystem<2>::add_spring(Vec);
 template physics::ContactJet<3> AxisymSystem<3>::segment_potential(int, const physics::ContactSegment&,
                                                                    bool) const;
 template PetscErrorCode AxisymSystem<3>::add_contact(Vec, bool&);
-template PetscErrorCode AxisymSystem<3>::add_spring(Vec);
 template physics::ContactJet<4> AxisymSystem<4>::segment_potential(int, const physics::ContactSegment&,
                                                                    bool) const;
 template PetscErrorCode AxisymSystem<4>::add_contact(Vec, bool&);
-template PetscErrorCode AxisymSystem<4>::add_spring(Vec);
 
 }  // namespace gaiter::solvers

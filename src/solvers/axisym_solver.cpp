@@ -109,7 +109,8 @@ PetscErrorCode AxisymSolver<P>::run(Vec x, AxisymReport& report) {
     PetscCall(PCFactorGetMatrix(pc, &factor));
     PetscCall(MatMumpsGetInfog(factor, 12, &negative));
     report.inertia_known = true;
-    report.stable = negative == system_.space().pressures + system_.space().multipliers;
+    report.stable =
+        negative == system_.space().pressures + system_.space().multipliers + system_.space().potentials;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -6,6 +6,7 @@
 
 #include "gaiter/petsc/check.hpp"
 #include "gaiter/petsc/session.hpp"
+#include "gaiter/solvers/axisym_points.hpp"
 
 namespace gaiter::solvers {
 
@@ -13,78 +14,9 @@ namespace {
 
 using Section = petsc::Handle<PetscSection, PetscSectionDestroy>;
 
-// A cell's points of the DMPlex: itself, its corners counterclockwise from the lower inner one, and its
-// sides, the first between corners 0 and 1. `reversed`: the side's own direction is against the growing local
-// coordinate.
-struct CellPoints {
-  PetscInt cell = 0;
-  int block = 0, column = 0, row = 0;
-  std::array<PetscInt, 4> corner{}, side{};
-  std::array<bool, 4> reversed{};
-};
-
-PetscErrorCode number_in_mesh(DM dm, const char* label, PetscInt first, PetscInt point, PetscInt* number) {
-  PetscFunctionBegin;
-  DMLabel numbers = nullptr;
-  PetscCall(DMGetLabel(dm, label, &numbers));
-  if (numbers)
-    PetscCall(DMLabelGetValue(numbers, point, number));
-  else
-    *number = point - first;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode find_points(DM dm, const AxisymMesh& mesh, PetscInt cell, PetscInt first_cell,
-                           PetscInt first_vertex, PetscInt last_vertex, CellPoints& points) {
-  PetscFunctionBegin;
-  PetscInt number = 0;
-  PetscCall(number_in_mesh(dm, "cell", first_cell, cell, &number));
-  points.cell = cell;
-  while (points.block + 1 < static_cast<int>(mesh.blocks.size()) &&
-         mesh.blocks[points.block + 1].first_cell <= number)
-    ++points.block;
-  const AxisymBlock& block = mesh.blocks[points.block];
-  points.column = (number - block.first_cell) % block.columns();
-  points.row = (number - block.first_cell) / block.columns();
-  const std::array<int, 4> corners{
-      block.vertex(points.column, points.row), block.vertex(points.column + 1, points.row),
-      block.vertex(points.column + 1, points.row + 1), block.vertex(points.column, points.row + 1)};
-
-  PetscInt size = 0, *closure = nullptr;
-  std::array<PetscInt, 4> sides{};
-  int side_count = 0;
-  PetscCall(DMPlexGetTransitiveClosure(dm, cell, PETSC_TRUE, &size, &closure));
-  for (PetscInt k = 1; k < size; ++k) {
-    const PetscInt point = closure[2 * k];
-    if (point >= first_vertex && point < last_vertex) {
-      PetscCall(number_in_mesh(dm, "vertex", first_vertex, point, &number));
-      for (int c = 0; c < 4; ++c)
-        if (corners[c] == number) points.corner[c] = point;
-    } else if (side_count < 4) {
-      sides[side_count++] = point;
-    }
-  }
-  PetscCall(DMPlexRestoreTransitiveClosure(dm, cell, PETSC_TRUE, &size, &closure));
-  // Sides 0 and 2 run along the columns, 1 and 3 along the rows; from and to in the sense of the local
-  // coordinates.
-  constexpr std::array<std::array<int, 2>, 4> ends{{{0, 1}, {1, 2}, {3, 2}, {0, 3}}};
-  for (PetscInt side : sides) {
-    const PetscInt* cone = nullptr;
-    PetscCall(DMPlexGetCone(dm, side, &cone));
-    for (int k = 0; k < 4; ++k) {
-      const PetscInt from = points.corner[ends[k][0]], to = points.corner[ends[k][1]];
-      if ((cone[0] == from && cone[1] == to) || (cone[0] == to && cone[1] == from)) {
-        points.side[k] = side;
-        points.reversed[k] = cone[0] == to;
-      }
-    }
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-// What is fixed at the nodes of a point: bit 0 u_r, bit 1 u_z.
+// What is fixed at the nodes of a point.
 struct Fixed {
-  bool u_r = false, u_z = false;
+  bool u_r = false, u_z = false, potential = false;
 };
 
 }  // namespace
@@ -93,11 +25,11 @@ struct Fixed {
 template <int P>
 class AxisymSpaceBuilder {
  public:
-  AxisymSpaceBuilder(AxisymSpace<P>& space, bool held) : space_(space), held_(held) {}
+  explicit AxisymSpaceBuilder(AxisymSpace<P>& space) : space_(space) {}
 
   PetscErrorCode run(MPI_Comm comm) {
     PetscFunctionBegin;
-    PetscCall(collect_points());
+    PetscCall(find_cell_points(space_.plex.get(), space_.mesh, points_));
     PetscCall(make_section(comm));
     PetscCall(number_unknowns());
     PetscCall(gather_surfaces(comm));
@@ -106,31 +38,26 @@ class AxisymSpaceBuilder {
 
  private:
   using Element = physics::AxisymElement<P>;
-  enum Field { displacement, pressure, multiplier, fields };
+  enum Field { displacement, pressure, multiplier, potential, fields };
 
   bool touches(const AxisymBlock& block, int column) const {
     return block.tube ? column == 0 : column == block.columns();
   }
   bool carries_multiplier(const AxisymBlock& block, int column) const {
-    return block.tube == space_.multipliers_on_tube && touches(block, column);
+    return block.tube == space_.choice.multipliers_on_tube && touches(block, column);
   }
 
-  PetscErrorCode collect_points() {
-    PetscFunctionBegin;
-    DM dm = space_.plex.get();
-    PetscInt first = 0, last = 0, first_vertex = 0, last_vertex = 0;
-    PetscCall(DMPlexGetHeightStratum(dm, 0, &first, &last));
-    PetscCall(DMPlexGetDepthStratum(dm, 0, &first_vertex, &last_vertex));
-    points_.resize(last - first);
-    for (PetscInt cell = first; cell < last; ++cell)
-      PetscCall(find_points(dm, space_.mesh, cell, first, first_vertex, last_vertex, points_[cell - first]));
-    PetscFunctionReturn(PETSC_SUCCESS);
+  bool charged() const { return space_.choice.layers > 0; }
+  // Number of the electrode, from inside, that a line between columns is; -1: none.
+  int electrode(const AxisymBlock& block, int line) const {
+    const int columns = block.columns() / space_.choice.layers;
+    return line % columns == 0 ? line / columns : -1;
   }
 
   // Columns and rows of lines that a corner lies on; sides: k as in CellPoints.
   Fixed fixed_on(const AxisymBlock& block, bool bottom_or_top, bool inner, bool outer) const {
     const bool contact = block.tube ? inner : outer;
-    return {!block.tube && inner, bottom_or_top || (held_ && contact)};
+    return {!block.tube && inner, bottom_or_top || (space_.choice.held && contact)};
   }
   Fixed fixed_at_corner(const CellPoints& points, int corner) const {
     const AxisymBlock& block = space_.mesh.blocks[points.block];
@@ -152,7 +79,7 @@ class AxisymSpaceBuilder {
     PetscCall(PetscSectionCreate(comm, section_.out()));
     PetscSection section = section_.get();
     PetscCall(PetscSectionSetNumFields(section, fields));
-    const std::array<const char*, fields> names{"displacement", "pressure", "multiplier"};
+    const std::array<const char*, fields> names{"displacement", "pressure", "multiplier", "potential"};
     for (int field = 0; field < fields; ++field)
       PetscCall(PetscSectionSetFieldName(section, field, names[field]));
     PetscCall(PetscSectionSetFieldComponents(section, displacement, 2));
@@ -184,28 +111,50 @@ class AxisymSpaceBuilder {
         }
       }
       PetscCall(set(points.cell, displacement, 2 * (P - 1) * (P - 1)));
-      if (block.tube) PetscCall(set(points.cell, pressure, Element::pressures));
+      if (!block.tube) continue;
+      PetscCall(set(points.cell, pressure, Element::pressures));
+      if (!charged()) continue;
+      for (int c = 0; c < 4; ++c) {
+        PetscCall(set(points.corner[c], potential, 1));
+        PetscCall(set(points.side[c], potential, P - 1));
+        fixed[points.corner[c] - first].potential = electrode(block, points.column + (c == 1 || c == 2)) >= 0;
+        if (c % 2 == 1)  // the sides along the rows, and so along the electrodes
+          fixed[points.side[c] - first].potential = electrode(block, points.column + (c == 1)) >= 0;
+      }
+      PetscCall(set(points.cell, potential, (P - 1) * (P - 1)));
     }
-    const auto fixed_places = [&](PetscInt point) {
+    // Places of the fixed unknowns of a field at a point.
+    const auto fixed_places = [&](PetscInt point, Field field) {
       std::vector<PetscInt> places;
       PetscInt count = 0;
-      PetscCallAbort(PETSC_COMM_SELF, PetscSectionGetFieldDof(section, point, displacement, &count));
+      const Fixed& what = fixed[point - first];
+      PetscCallAbort(PETSC_COMM_SELF, PetscSectionGetFieldDof(section, point, field, &count));
       for (PetscInt i = 0; i < count; ++i)
-        if (i % 2 == 0 ? fixed[point - first].u_r : fixed[point - first].u_z) places.push_back(i);
+        if (field == potential ? what.potential : (i % 2 == 0 ? what.u_r : what.u_z)) places.push_back(i);
       return places;
     };
     for (PetscInt point = first; point < last; ++point) {
-      const auto count = static_cast<PetscInt>(fixed_places(point).size());
-      PetscCall(PetscSectionSetConstraintDof(section, point, count));
-      PetscCall(PetscSectionSetFieldConstraintDof(section, point, displacement, count));
+      PetscInt total = 0;
+      for (Field field : {displacement, potential}) {
+        const auto count = static_cast<PetscInt>(fixed_places(point, field).size());
+        PetscCall(PetscSectionSetFieldConstraintDof(section, point, field, count));
+        total += count;
+      }
+      PetscCall(PetscSectionSetConstraintDof(section, point, total));
     }
     PetscCall(PetscSectionSetUp(section));
     for (PetscInt point = first; point < last; ++point) {
-      const std::vector<PetscInt> places = fixed_places(point);
-      if (places.empty()) continue;
-      // The displacement comes first at every point, so that field and point places are the same.
-      PetscCall(PetscSectionSetConstraintIndices(section, point, places.data()));
-      PetscCall(PetscSectionSetFieldConstraintIndices(section, point, displacement, places.data()));
+      std::vector<PetscInt> all;
+      PetscInt start = 0, offset = 0;
+      PetscCall(PetscSectionGetOffset(section, point, &start));
+      for (Field field : {displacement, potential}) {
+        const std::vector<PetscInt> places = fixed_places(point, field);
+        if (places.empty()) continue;
+        PetscCall(PetscSectionGetFieldOffset(section, point, field, &offset));
+        PetscCall(PetscSectionSetFieldConstraintIndices(section, point, field, places.data()));
+        for (PetscInt place : places) all.push_back(offset - start + place);
+      }
+      if (!all.empty()) PetscCall(PetscSectionSetConstraintIndices(section, point, all.data()));
     }
     PetscCall(DMSetLocalSection(dm, section));
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -238,14 +187,33 @@ class AxisymSpaceBuilder {
     PetscFunctionReturn(PETSC_SUCCESS);
   }
 
-  // Puts two unknowns a node, from place `from` on, to node (i, j) of a cell.
-  static void put(AxisymCell<P>& cell, int i, int j, int from, const std::vector<PetscInt>& local,
-                  const std::vector<PetscInt>& global) {
-    const int node = i + (P + 1) * j;
-    for (int k = 0; k < 2; ++k) {
-      cell.local[2 * node + k] = local[from + k];
-      cell.global[2 * node + k] = global[from + k];
+  // Gives the nodes of a cell their `each` unknowns of a field, from place `first` of the cell's list on.
+  PetscErrorCode number_nodes(const CellPoints& points, Field field, int each, int first,
+                              AxisymCell<P>& cell) const {
+    PetscFunctionBegin;
+    std::vector<PetscInt> local, global;
+    const auto put = [&](int i, int j, int from) {
+      const int node = i + (P + 1) * j;
+      for (int k = 0; k < each; ++k) {
+        cell.local[first + each * node + k] = local[each * from + k];
+        cell.global[first + each * node + k] = global[each * from + k];
+      }
+    };
+    constexpr std::array<std::array<int, 2>, 4> corner_node{{{0, 0}, {P, 0}, {P, P}, {0, P}}};
+    for (int c = 0; c < 4; ++c) {
+      PetscCall(places(points.corner[c], field, local, global));
+      put(corner_node[c][0], corner_node[c][1], 0);
+      PetscCall(places(points.side[c], field, local, global));
+      for (int k = 1; k < P; ++k) {
+        const int along = points.reversed[c] ? P - k : k;
+        const std::array<std::array<int, 2>, 4> node{{{along, 0}, {P, along}, {along, P}, {0, along}}};
+        put(node[c][0], node[c][1], k - 1);
+      }
     }
+    PetscCall(places(points.cell, field, local, global));
+    for (int j = 1; j < P; ++j)
+      for (int i = 1; i < P; ++i) put(i, j, (i - 1) + (P - 1) * (j - 1));
+    PetscFunctionReturn(PETSC_SUCCESS);
   }
 
   PetscErrorCode number_unknowns() {
@@ -256,55 +224,62 @@ class AxisymSpaceBuilder {
       AxisymCell<P> cell{points.block, points.column,
                          points.row,   Element::geometry(block.corners(points.column, points.row)),
                          {},           {}};
-      cell.local.resize(block.tube ? Element::tube_unknowns : Element::leg_unknowns);
+      cell.local.resize(!block.tube ? Element::leg_unknowns
+                        : charged() ? Element::charged_unknowns
+                                    : Element::tube_unknowns);
       cell.global.resize(cell.local.size());
-      constexpr std::array<std::array<int, 2>, 4> corner_node{{{0, 0}, {P, 0}, {P, P}, {0, P}}};
-      for (int c = 0; c < 4; ++c) {
-        PetscCall(places(points.corner[c], displacement, local, global));
-        put(cell, corner_node[c][0], corner_node[c][1], 0, local, global);
-        PetscCall(places(points.side[c], displacement, local, global));
-        for (int k = 1; k < P; ++k) {
-          const int along = points.reversed[c] ? P - k : k;
-          const std::array<std::array<int, 2>, 4> node{{{along, 0}, {P, along}, {along, P}, {0, along}}};
-          put(cell, node[c][0], node[c][1], 2 * (k - 1), local, global);
-        }
-      }
-      PetscCall(places(points.cell, displacement, local, global));
-      for (int j = 1; j < P; ++j)
-        for (int i = 1; i < P; ++i) put(cell, i, j, 2 * ((i - 1) + (P - 1) * (j - 1)), local, global);
+      PetscCall(number_nodes(points, displacement, 2, 0, cell));
       if (block.tube) {
         PetscCall(places(points.cell, pressure, local, global));
         std::copy(local.begin(), local.end(), cell.local.begin() + 2 * Element::nodes);
         std::copy(global.begin(), global.end(), cell.global.begin() + 2 * Element::nodes);
+      }
+      if (block.tube && charged()) {
+        PetscCall(number_nodes(points, potential, 1, Element::tube_unknowns, cell));
+        for (int node = 0; node < Element::nodes; ++node) {
+          const int column = node % (P + 1);
+          const int line = column == 0 ? points.column : column == P ? points.column + 1 : -1;
+          if (line < 0 || electrode(block, line) < 0) continue;
+          const double value = electrode(block, line) % 2;
+          space_.electrodes.emplace_back(cell.local[Element::tube_unknowns + node], value);
+        }
       }
       space_.cells.push_back(std::move(cell));
     }
     PetscFunctionReturn(PETSC_SUCCESS);
   }
 
-  // Every rank tells what its cells know of the contact surfaces: block, place along the surface, global
-  // unknowns.
+  // Every rank tells what its cells know of the surfaces: block, place along the surface, global unknowns.
+  // The outer faces of the tubes are counted as blocks after all others.
   PetscErrorCode gather_surfaces(MPI_Comm comm) {
     PetscFunctionBegin;
-    constexpr int record = 5;  // block, place, u_r, u_z, multiplier
+    constexpr int record = 5;  // surface, place, u_r, u_z, multiplier
+    const auto blocks = static_cast<int>(space_.mesh.blocks.size());
     std::vector<PetscInt> mine, local, global;
-    for (std::size_t c = 0; c < points_.size(); ++c) {
+    const auto tell = [&](std::size_t c, int column, int surface, int corner) -> PetscErrorCode {
+      PetscFunctionBegin;
       const AxisymCell<P>& cell = space_.cells[c];
-      const AxisymBlock& block = space_.mesh.blocks[cell.block];
-      const int column = block.tube ? 0 : P;
-      if (!touches(block, cell.column + (block.tube ? 0 : 1))) continue;
       for (int j = 0; j <= P; ++j) {
         const int node = column + (P + 1) * j;
         PetscInt carried = -1;
-        if ((j == 0 || j == P) && block.tube == space_.multipliers_on_tube) {
-          const int corner = block.tube ? (j == 0 ? 0 : 3) : (j == 0 ? 1 : 2);
-          PetscCall(places(points_[c].corner[corner], multiplier, local, global));
+        if ((j == 0 || j == P) && surface < blocks &&
+            space_.mesh.blocks[surface].tube == space_.choice.multipliers_on_tube) {
+          PetscCall(places(points_[c].corner[j == 0 ? corner : 3 - corner], multiplier, local, global));
           carried = global[0];
         }
-        for (PetscInt value : {PetscInt(cell.block), PetscInt(P * cell.row + j), cell.global[2 * node],
+        for (PetscInt value : {PetscInt(surface), PetscInt(P * cell.row + j), cell.global[2 * node],
                                cell.global[2 * node + 1], carried})
           mine.push_back(value);
       }
+      PetscFunctionReturn(PETSC_SUCCESS);
+    };
+    for (std::size_t c = 0; c < points_.size(); ++c) {
+      const AxisymCell<P>& cell = space_.cells[c];
+      const AxisymBlock& block = space_.mesh.blocks[cell.block];
+      const bool first = cell.column == 0, last = cell.column + 1 == block.columns();
+      if (block.tube && first) PetscCall(tell(c, 0, cell.block, 0));
+      if (block.tube && last) PetscCall(tell(c, P, blocks + cell.block, 1));
+      if (!block.tube && last) PetscCall(tell(c, P, cell.block, 1));
     }
     const int ranks = petsc::size(comm), count = static_cast<int>(mine.size());
     std::vector<int> counts(ranks), offsets(ranks + 1, 0);
@@ -314,22 +289,29 @@ class AxisymSpaceBuilder {
     PetscCallMPI(MPI_Allgatherv(mine.data(), count, MPIU_INT, all.data(), counts.data(), offsets.data(),
                                 MPIU_INT, comm));
 
-    const auto& lobatto = physics::lobatto_points<P>();
-    for (std::size_t b = 0; b < space_.mesh.blocks.size(); ++b) {
-      const AxisymBlock& block = space_.mesh.blocks[b];
-      ContactSurface surface{static_cast<int>(b), std::vector<SurfaceNode>(P * block.rows() + 1)};
-      const std::vector<double>& radius = block.tube ? block.inner : block.outer;
-      for (int place = 0; place <= P * block.rows(); ++place) {
-        const int row = std::min(place / P, block.rows() - 1);
+    const auto surface_of = [&](int block, const std::vector<double>& radius) {
+      const auto& lobatto = physics::lobatto_points<P>();
+      const AxisymBlock& body = space_.mesh.blocks[block];
+      ContactSurface surface{block, std::vector<SurfaceNode>(P * body.rows() + 1)};
+      for (int place = 0; place <= P * body.rows(); ++place) {
+        const int row = std::min(place / P, body.rows() - 1);
         const double along = lobatto[place - P * row];
         surface.nodes[place].radius = radius[row] + along * (radius[row + 1] - radius[row]);
-        surface.nodes[place].height = block.height[row] + along * (block.height[row + 1] - block.height[row]);
+        surface.nodes[place].height = body.height[row] + along * (body.height[row + 1] - body.height[row]);
       }
-      (block.tube ? space_.tubes.emplace_back() : space_.leg) = std::move(surface);
+      return surface;
+    };
+    for (int b = 0; b < blocks; ++b) {
+      const AxisymBlock& block = space_.mesh.blocks[b];
+      (block.tube ? space_.tubes.emplace_back() : space_.leg) =
+          surface_of(b, block.tube ? block.inner : block.outer);
+      if (block.tube) space_.outer_faces.push_back(surface_of(b, block.outer));
     }
     for (std::size_t k = 0; k < all.size(); k += record) {
-      const auto block = static_cast<std::size_t>(all[k]);
-      ContactSurface& surface = space_.mesh.blocks[block].tube ? space_.tubes[block] : space_.leg;
+      const PetscInt number = all[k];
+      ContactSurface& surface = number >= blocks                  ? space_.outer_faces[number - blocks]
+                                : space_.mesh.blocks[number].tube ? space_.tubes[number]
+                                                                  : space_.leg;
       SurfaceNode& node = surface.nodes[all[k + 1]];
       node.u_r = all[k + 2];
       node.u_z = all[k + 3];
@@ -337,24 +319,25 @@ class AxisymSpaceBuilder {
     }
     for (const AxisymBlock& block : space_.mesh.blocks) {
       if (block.tube) space_.pressures += block.columns() * block.rows() * Element::pressures;
-      if (block.tube == space_.multipliers_on_tube) space_.multipliers += block.rows() + 1;
+      if (block.tube == space_.choice.multipliers_on_tube) space_.multipliers += block.rows() + 1;
+      if (block.tube && charged())
+        space_.potentials += (P * block.columns() - space_.choice.layers) * (P * block.rows() + 1);
     }
     PetscFunctionReturn(PETSC_SUCCESS);
   }
 
   AxisymSpace<P>& space_;
-  bool held_;
   std::vector<CellPoints> points_;
   Section section_;
 };
 
 template <int P>
-AxisymSpace<P> AxisymSpace<P>::make(MPI_Comm comm, AxisymMesh mesh, bool multipliers_on_tube, bool held) {
+AxisymSpace<P> AxisymSpace<P>::make(MPI_Comm comm, AxisymMesh mesh, const SpaceChoice& choice) {
   AxisymSpace space;
   space.mesh = std::move(mesh);
   space.plex = make_plex(comm, space.mesh);
-  space.multipliers_on_tube = multipliers_on_tube;
-  petsc::check(AxisymSpaceBuilder<P>(space, held).run(comm));
+  space.choice = choice;
+  petsc::check(AxisymSpaceBuilder<P>(space).run(comm));
   return space;
 }
 

@@ -169,41 +169,8 @@ PetscErrorCode set_slice_start(const AxisymSystem<P>& system, const std::vector<
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-template <int P>
-std::vector<typename physics::AxisymElement<P>::Field> radial_field(const model::Scene& scene,
-                                                                    const AxisymSystem<P>& system,
-                                                                    const std::vector<RadialState>& states) {
-  using Element = physics::AxisymElement<P>;
-  const AxisymSpace<P>& space = system.space();
-  const int layers = scene.bandage.layers;
-  std::vector<typename Element::Field> fields;
-  for (const AxisymCell<P>& cell : space.cells) {
-    typename Element::Field& field = fields.emplace_back();
-    const AxisymBlock& block = space.mesh.blocks[cell.block];
-    if (!block.tube) continue;
-    const double A = block.inner[0], wall = block.outer[0] - A;
-    for (int g = 0; g < Element::points; ++g) {
-      const auto [along_R, along_Z] = cell.geometry.place[g];
-      const double across =
-          block.across[cell.column] + along_R * (block.across[cell.column + 1] - block.across[cell.column]);
-      const double a = interpolate<P>(states[cell.block].tube_radius, cell.row, along_Z) / space.mesh.length;
-      const auto deformed = [&](double R) { return std::sqrt(a * a + (R - A) * (R + A)); };
-      const double R = A + across * wall;
-      const int layer = std::min(layers - 1, static_cast<int>(across * layers));
-      const double low = deformed(A + wall * layer / layers),
-                   high = deformed(A + wall * (layer + 1) / layers);
-      const double rho = deformed(R);
-      // phi = log(rho / low) / log(high / low), d rho / d R = R / rho.
-      field[g] = {R / (rho * rho * std::log(high / low)), 0};
-    }
-  }
-  return fields;
-}
-
-#define GAITER_START(P)                                                                                     \
-  template PetscErrorCode set_slice_start<P>(const AxisymSystem<P>&, const std::vector<RadialState>&, Vec); \
-  template std::vector<physics::AxisymElement<P>::Field> radial_field<P>(                                   \
-      const model::Scene&, const AxisymSystem<P>&, const std::vector<RadialState>&);
+#define GAITER_START(P) \
+  template PetscErrorCode set_slice_start<P>(const AxisymSystem<P>&, const std::vector<RadialState>&, Vec);
 GAITER_START(2)
 GAITER_START(3)
 GAITER_START(4)

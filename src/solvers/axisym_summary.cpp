@@ -81,7 +81,7 @@ AxisymSummary summarise_axisym(const model::Scene& scene, std::size_t segment, c
   const model::Segment& piece = scene.leg.segments[segment];
   const model::Module& module = scene.bandage.modules[segment];
   const auto &tube = system.tubes()[0], &leg = system.leg();
-  const auto& carrier = space.multipliers_on_tube ? tube : leg;
+  const auto& carrier = space.choice.multipliers_on_tube ? tube : leg;
   const double height = piece.height / space.mesh.length;
   const auto mean_radius = [](std::size_t, double, Pair r, Pair z, double) { return r[0] * z[1]; };
 

@@ -29,8 +29,13 @@ PetscErrorCode AxisymSystem<P>::create() {
   PetscCall(DMCreateLocalVector(dm, local_x_.out()));
   PetscCall(DMCreateLocalVector(dm, local_residual_.out()));
   PetscCall(VecSet(local_x_.get(), 0));
+  for (const auto& [place, potential] : space_.electrodes)
+    PetscCall(VecSetValue(local_x_.get(), place, potential, INSERT_VALUES));
+  PetscCall(VecAssemblyBegin(local_x_.get()));
+  PetscCall(VecAssemblyEnd(local_x_.get()));
 
-  // Surface values: u_r, u_z and multiplier of each node of the tubes, then of the leg, on every rank.
+  // Surface values: u_r, u_z and multiplier of each node of the tubes, of the leg, and of the tubes' outer
+  // faces, on every rank.
   const auto list = [&](const ContactSurface& surface) {
     for (const SurfaceNode& node : surface.nodes)
       for (PetscInt unknown : {node.u_r, node.u_z, node.multiplier}) surface_unknowns_.push_back(unknown);
@@ -41,6 +46,7 @@ PetscErrorCode AxisymSystem<P>::create() {
     first_tube_edge_.push_back(first_tube_edge_.back() + static_cast<int>(tube.nodes.size() - 1) / P);
   }
   list(space_.leg);
+  for (const ContactSurface& face : space_.outer_faces) list(face);
   std::vector<PetscInt> free;
   for (PetscInt unknown : surface_unknowns_)
     if (unknown >= 0) free.push_back(unknown);
@@ -77,6 +83,7 @@ PetscErrorCode AxisymSystem<P>::create() {
   };
   for (const ContactSurface& tube : space_.tubes) tubes_.push_back(rest(tube));
   leg_ = rest(space_.leg);
+  for (const ContactSurface& face : space_.outer_faces) outer_faces_.push_back(rest(face));
   PetscCall(preallocate());
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -106,15 +113,26 @@ std::vector<PetscInt> AxisymSystem<P>::unknowns_of(const Pair& pair) const {
   for (int i = 0; i <= P; ++i) unknowns.push_back(tube[P * pair.tube_edge + i].u_z);
   for (int i = 0; i <= P; ++i) unknowns.push_back(leg[P * pair.leg_edge + i].u_r);
   for (int i = 0; i <= P; ++i) unknowns.push_back(leg[P * pair.leg_edge + i].u_z);
-  const auto& carrier = space_.multipliers_on_tube ? tube : leg;
-  const int edge = space_.multipliers_on_tube ? pair.tube_edge : pair.leg_edge;
+  const auto& carrier = space_.choice.multipliers_on_tube ? tube : leg;
+  const int edge = space_.choice.multipliers_on_tube ? pair.tube_edge : pair.leg_edge;
   unknowns.push_back(carrier[P * edge].multiplier);
   unknowns.push_back(carrier[P * (edge + 1)].multiplier);
   return unknowns;
 }
 
-// The tangent's pattern: blocks of this rank's cells, blocks of its share of the pairs, diagonals of its
-// share of the multipliers, in this order in values_.
+template <int P>
+std::vector<PetscInt> AxisymSystem<P>::unknowns_across(std::size_t tube, std::size_t edge) const {
+  std::vector<PetscInt> unknowns;
+  for (const auto* face : {&space_.tubes[tube].nodes, &space_.outer_faces[tube].nodes}) {
+    for (int i = 0; i <= P; ++i) unknowns.push_back((*face)[P * edge + i].u_r);
+    for (int i = 0; i <= P; ++i) unknowns.push_back((*face)[P * edge + i].u_z);
+  }
+  return unknowns;
+}
+
+// The tangent's pattern: blocks of this rank's cells, then its share of the blocks of the pairs, of the
+// diagonals of the multipliers, of the blocks across the wall, and of the diagonals of the springs, in this
+// order in values_.
 template <int P>
 PetscErrorCode AxisymSystem<P>::preallocate() {
   PetscFunctionBegin;
@@ -136,6 +154,11 @@ PetscErrorCode AxisymSystem<P>::preallocate() {
       rows.push_back(surface_unknowns_[k]);
       columns.push_back(surface_unknowns_[k]);
     }
+  first_electrode_value_ = rows.size();
+  if (!space_.choice.layers)
+    for (std::size_t t = 0; t < space_.tubes.size(); ++t)
+      for (std::size_t e = rank; P * e + P < space_.tubes[t].nodes.size(); e += ranks)
+        add_block(unknowns_across(t, e));
   first_spring_value_ = rows.size();
   for (const ContactSurface& tube : space_.tubes)
     for (std::size_t i = rank; i < tube.nodes.size(); i += ranks) {
@@ -166,6 +189,7 @@ PetscErrorCode AxisymSystem<P>::read_surfaces(Vec x) {
   };
   for (std::size_t t = 0; t < tubes_.size(); ++t) read(space_.tubes[t], tubes_[t]);
   read(space_.leg, leg_);
+  for (std::size_t t = 0; t < outer_faces_.size(); ++t) read(space_.outer_faces[t], outer_faces_[t]);
   PetscCall(VecRestoreArrayRead(surface_values_.get(), &values));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -179,6 +203,7 @@ PetscErrorCode AxisymSystem<P>::evaluate(Vec x, Vec residual, bool& admissible) 
   PetscCall(read_surfaces(x));
   std::fill(values_.begin(), values_.end(), 0.0);
   PetscCall(add_contact(residual, admissible));
+  PetscCall(add_electrodes(residual, admissible));
   PetscCall(add_spring(residual));
   PetscCall(add_cells(x, residual, admissible));
   admissible = petsc::agree(comm_, admissible);
@@ -207,18 +232,22 @@ PetscErrorCode AxisymSystem<P>::add_cells(Vec x, Vec residual, bool& admissible)
   PetscScalar* out = nullptr;
   PetscCall(VecGetArrayRead(local_x_.get(), &in));
   PetscCall(VecGetArray(local_residual_.get(), &out));
-  std::array<double, Element::tube_unknowns> unknowns, forces;
+  std::array<double, Element::charged_unknowns> unknowns, forces;
   double* tangent = values_.data();
   for (std::size_t c = 0; admissible && c < space_.cells.size(); ++c) {
     const AxisymCell<P>& cell = space_.cells[c];
     const AxisymBlock& block = space_.mesh.blocks[cell.block];
     for (std::size_t i = 0; i < cell.local.size(); ++i) unknowns[i] = in[cell.local[i]];
     double energy = 0;
-    const bool fine =
-        block.tube ? Element::tube(cell.geometry, materials_.tube, unknowns.data(),
-                                   field_.empty() ? nullptr : &field_[c], energy, forces.data(), tangent)
-                   : Element::leg(cell.geometry, materials_.leg[block.segment[cell.row]], unknowns.data(),
-                                  energy, forces.data(), tangent);
+    bool fine = false;
+    if (!block.tube)
+      fine = Element::leg(cell.geometry, materials_.leg[block.segment[cell.row]], unknowns.data(), energy,
+                          forces.data(), tangent);
+    else if (space_.choice.layers)
+      fine = Element::charged_tube(cell.geometry, materials_.tube, energised_, unknowns.data(), energy,
+                                   forces.data(), tangent);
+    else
+      fine = Element::tube(cell.geometry, materials_.tube, unknowns.data(), energy, forces.data(), tangent);
     admissible = admissible && fine;
     energy_ += energy;
     for (std::size_t i = 0; i < cell.local.size(); ++i) out[cell.local[i]] += forces[i];

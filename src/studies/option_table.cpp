@@ -23,9 +23,10 @@ std::vector<Option> make_table() {
   return {
       {.name = "axisym_electrostatics",
        .kind = Kind::choice,
-       .choices = {"radial", "off"},
+       .choices = {"radial", "field", "off"},
        .default_text = "radial",
-       .doc = "Electric field in the finite elements: radial, in closed form in the deformed wall, or none.",
+       .doc = "Electric field in the finite elements: closed form across the deformed wall, potential on "
+              "the mesh, or none.",
        .set =
            [](Scene& s, std::size_t, Values v) {
              s.axisym.electrostatics = static_cast<model::Electrostatics>(static_cast<int>(v[0]));

@@ -21,7 +21,9 @@ struct Discretisation {
   double fixed_point_tolerance = 1e-4;  // change of r over the undeformed radius at which the paper stops [1]
 };
 
-enum class Electrostatics { radial, off };  // field of the deformed wall in closed form, or none
+// Electric field in the wall: in closed form across the deformed wall, from the potential solved on the mesh,
+// or none.
+enum class Electrostatics { radial, field, off };
 enum class ContactSide { tube, leg };
 
 // How the axisymmetric finite element model is solved.

@@ -20,6 +20,7 @@ struct AxisymElement {
   static constexpr int points = (P + 1) * (P + 1);  // Gauss points
   static constexpr int leg_unknowns = 2 * nodes;    // u_r, u_z of each node in turn
   static constexpr int tube_unknowns = 2 * nodes + pressures;
+  static constexpr int charged_unknowns = tube_unknowns + nodes;  // and the electric potential at each node
 
   // Corners in the order (0,0), (1,0), (1,1), (0,1) of the local coordinates; R >= 0, counterclockwise.
   struct Geometry {
@@ -32,13 +33,15 @@ struct AxisymElement {
   };
   static Geometry geometry(const std::array<std::array<double, 2>, 4>& corners);
 
-  // Reference gradient of the electric potential at each Gauss point.
-  using Field = std::array<std::array<double, 2>, points>;
-
   // Potential energy, residual and tangent (row by row, symmetric) of an element. False where the element is
-  // inverted or its numbers are not finite: the trial is inadmissible. `field` null: no voltage.
+  // inverted or its numbers are not finite: the trial is inadmissible.
   static bool tube(const Geometry& geometry, const TubeMaterial& material, const double* unknowns,
-                   const Field* field, double& energy, double* residual, double* tangent);
+                   double& energy, double* residual, double* tangent);
+  // The same with the electric potential, over the voltage, as an unknown; `share` is the share of the
+  // field's energy that acts on the wall. At 0 the potential is that of the undeformed wall, so that its rows
+  // never vanish.
+  static bool charged_tube(const Geometry& geometry, const TubeMaterial& material, double share,
+                           const double* unknowns, double& energy, double* residual, double* tangent);
   static bool leg(const Geometry& geometry, const LegMaterialLaw& law, const double* unknowns, double& energy,
                   double* residual, double* tangent);
 };

@@ -37,6 +37,7 @@ struct TubeMaterial {
   double bulk_modulus = std::numeric_limits<double>::infinity();  // K [Pa]
   double stabilisation = 0;                                       // kappa [Pa]
   double permittivity = 0;                                        // absolute [F/m]
+  int layers = 1;  // of equal reference thickness, electrically in parallel
 };
 
 template <int N>

@@ -28,7 +28,6 @@ class AxisymCase {
  private:
   AxisymMaterials materials(double length) const;
   std::vector<RadialState> states(bool actuated) const;
-  void set_field(std::vector<typename physics::AxisymElement<P>::Field> field, double factor);
   AxisymReport follow_spring(int& iterations);
   AxisymSummary summarise(const AxisymReport& report, int iterations, bool energised) const;
 

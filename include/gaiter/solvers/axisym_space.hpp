@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-2-Clause
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "gaiter/physics/axisym_element.hpp"
@@ -8,7 +9,8 @@
 
 namespace gaiter::solvers {
 
-// A cell of this rank and where its unknowns are: u_r, u_z of each node, then the pressures of a tube's cell.
+// A cell of this rank and where its unknowns are: u_r, u_z of each node, then the pressures of a tube's cell,
+// then the potentials of its nodes where the space has them.
 // Places in the local Vec of the DM (fixed unknowns included), and in the global Vec (fixed ones: -1).
 template <int P>
 struct AxisymCell {
@@ -30,21 +32,31 @@ struct ContactSurface {
   std::vector<SurfaceNode> nodes;
 };
 
+// What the space of a problem holds besides displacements and pressures.
+struct SpaceChoice {
+  bool multipliers_on_tube = true;
+  bool held = false;
+  int layers = 0;  // of the wall that the electric potential is solved in; 0: no potential
+};
+
 // The unknowns of an axisymmetric problem on its DMPlex: displacement on both bodies, discontinuous pressure
-// in the tubes, a multiplier at each contact vertex of the tubes (or of the leg). Fixed: u_z at both ends of
-// every body, u_r on the axis, and with `held` u_z on the contact surfaces.
+// in the tubes, a multiplier at each contact vertex of the tubes (or of the leg), and if chosen the electric
+// potential in the tubes, over the voltage. Fixed: u_z at both ends of every body, u_r on the axis, with
+// `held` u_z on the contact surfaces, and the potential at the electrodes, in turn 0 and 1.
 template <int P>
 struct AxisymSpace {
   AxisymMesh mesh;
   Plex plex;
-  std::vector<AxisymCell<P>> cells;   // of this rank
-  std::vector<ContactSurface> tubes;  // one a tube block
+  std::vector<AxisymCell<P>> cells;         // of this rank
+  std::vector<ContactSurface> tubes;        // one a tube block
+  std::vector<ContactSurface> outer_faces;  // of the tubes; no multipliers
   ContactSurface leg;
-  bool multipliers_on_tube = true;
-  PetscInt pressures = 0, multipliers = 0;  // over all ranks
+  SpaceChoice choice;
+  PetscInt pressures = 0, multipliers = 0, potentials = 0;  // over all ranks
+  std::vector<std::pair<PetscInt, double>> electrodes;  // places in the local Vec, and the potential there
 
-  // @note Collective.
-  static AxisymSpace make(MPI_Comm comm, AxisymMesh mesh, bool multipliers_on_tube, bool held);
+  // @note Collective. The columns of every tube must be a multiple of the layers chosen.
+  static AxisymSpace make(MPI_Comm comm, AxisymMesh mesh, const SpaceChoice& choice);
 };
 
 }  // namespace gaiter::solvers

@@ -21,11 +21,4 @@ RadialState slice_states(const model::Scene& scene, std::size_t segment,
 template <int P>
 PetscErrorCode set_slice_start(const AxisymSystem<P>& system, const std::vector<RadialState>& states, Vec x);
 
-// Reference gradient over V of the potential of the radial field in the wall as deformed in `states`, for
-// each cell of this rank. Layers are electrically in parallel, each between two electrodes.
-template <int P>
-std::vector<typename physics::AxisymElement<P>::Field> radial_field(const model::Scene& scene,
-                                                                    const AxisymSystem<P>& system,
-                                                                    const std::vector<RadialState>& states);
-
 }  // namespace gaiter::solvers

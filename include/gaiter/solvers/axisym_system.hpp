@@ -33,9 +33,9 @@ class AxisymSystem {
   // Potential at the last x evaluated. @note Collective.
   double energy() const;
 
-  // Reference gradients of the potential over V at the Gauss points of each cell of this rank; empty: no
-  // voltage.
-  void set_field(std::vector<typename physics::AxisymElement<P>::Field> field) { field_ = std::move(field); }
+  // The share of the electric field's energy that acts: 0 no voltage, 1 the full one; linear in the voltage's
+  // square. The field is that of the space's potential if it has one, else the closed form across the wall.
+  void energise(double share) { energised_ = share; }
 
   // A spring, per length of the tubes' inner faces, that holds them at their reference height: 0 for the
   // model itself, a path to it where Newton's method needs one. In units of stress.
@@ -71,10 +71,12 @@ class AxisymSystem {
   PetscErrorCode create();
   PetscErrorCode preallocate();
   std::vector<PetscInt> unknowns_of(const Pair& pair) const;
+  std::vector<PetscInt> unknowns_across(std::size_t tube, std::size_t edge) const;
   void list_pairs();
   PetscErrorCode read_surfaces(Vec x);
   PetscErrorCode add_cells(Vec x, Vec residual, bool& admissible);
   PetscErrorCode add_contact(Vec residual, bool& admissible);
+  PetscErrorCode add_electrodes(Vec residual, bool& admissible);
   PetscErrorCode add_spring(Vec residual);
   physics::ContactJet<P> segment_potential(int tube, const physics::ContactSegment& segment,
                                            bool effective) const;
@@ -82,7 +84,6 @@ class AxisymSystem {
   MPI_Comm comm_;
   AxisymSpace<P> space_;
   AxisymMaterials materials_;
-  std::vector<typename Element::Field> field_;
   petsc::Handle<Mat, MatDestroy> matrix_;
   petsc::Handle<VecScatter, VecScatterDestroy> scatter_;
   petsc::Vector surface_values_, local_x_, local_residual_;
@@ -90,12 +91,13 @@ class AxisymSystem {
 
   std::vector<SurfaceState> tubes_;
   SurfaceState leg_;
+  std::vector<SurfaceState> outer_faces_;
   std::vector<Pair> pairs_;   // all, the same on every rank
   std::vector<int> pair_at_;  // [tube edge over all tubes][leg edge] -> pair, -1: none
   std::vector<int> first_tube_edge_;
-  std::size_t cell_values_ = 0, first_spring_value_ = 0;  // of values_
+  std::size_t cell_values_ = 0, first_electrode_value_ = 0, first_spring_value_ = 0;  // of values_
   std::vector<PetscScalar> values_;
-  double energy_ = 0, spring_ = 0;
+  double energy_ = 0, spring_ = 0, energised_ = 0;
   int active_changes_ = 0;
 };
 
