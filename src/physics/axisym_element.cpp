@@ -148,6 +148,7 @@ typename AxisymElement<P>::Geometry AxisymElement<P>::geometry(
       const double determinant = jacobian[0][0] * jacobian[1][1] - jacobian[0][1] * jacobian[1][0];
       const double radius = position(x, y, 0);
       result.weight[point] = 2 * M_PI * radius * determinant * rule.weights[gx] * rule.weights[gy];
+      result.radius[point] = radius;
       result.place[point] = {x, y};
       result.share[point] = rule.weights[gx] * rule.weights[gy];
       std::array<double, P + 1> vx, sx, vy, sy;
@@ -172,8 +173,8 @@ typename AxisymElement<P>::Geometry AxisymElement<P>::geometry(
 }
 
 template <int P>
-bool AxisymElement<P>::tube(const Geometry& geometry, const TubeMaterial& material, const double* unknowns,
-                            double& energy, double* residual, double* tangent) {
+bool AxisymElement<P>::tube(const Geometry& geometry, const TubeMaterial& material, const WallField& field,
+                            const double* unknowns, double& energy, double* residual, double* tangent) {
   constexpr int N = components + 1;
   std::fill_n(residual, tube_unknowns, 0.0);
   std::fill_n(tangent, tube_unknowns * tube_unknowns, 0.0);
@@ -184,7 +185,15 @@ bool AxisymElement<P>::tube(const Geometry& geometry, const TubeMaterial& materi
     double pressure = 0;
     for (int q = 0; q < pressures; ++q) pressure += geometry.pressure[point][q] * unknowns[2 * nodes + q];
     const auto jets = as_jets<N>(f);
-    const Jet<N> stored = tube_energy(material, jets, Jet<N>::variable(pressure, components));
+    Jet<N> stored = tube_energy(material, jets, Jet<N>::variable(pressure, components));
+    if (field.share > 0) {
+      const double wall = field.outer_radius - field.inner_radius, R = geometry.radius[point];
+      const auto layer = [&](int k) { return field.inner_radius + k * wall / material.layers; };
+      const int k = std::clamp(static_cast<int>((R - field.inner_radius) / wall * material.layers), 0,
+                               material.layers - 1);
+      stored +=
+          closed_form_electric_energy(field.share * material.permittivity, jets, R, layer(k), layer(k + 1));
+    }
     if (!std::isfinite(stored.value)) return false;
     energy += geometry.weight[point] * stored.value;
     scatter<P, N>(geometry, point, stored, geometry.weight[point], tube_unknowns, residual, tangent);
@@ -193,9 +202,9 @@ bool AxisymElement<P>::tube(const Geometry& geometry, const TubeMaterial& materi
 }
 
 template <int P>
-bool AxisymElement<P>::charged_tube(const Geometry& geometry, const TubeMaterial& material, double share,
-                                    const double* unknowns, double& energy, double* residual,
-                                    double* tangent) {
+bool AxisymElement<P>::charged_tube(const Geometry& geometry, const TubeMaterial& material,
+                                    const WallField& field, const double* unknowns, double& energy,
+                                    double* residual, double* tangent) {
   constexpr int N = components + 3;
   std::fill_n(residual, charged_unknowns, 0.0);
   std::fill_n(tangent, charged_unknowns * charged_unknowns, 0.0);
@@ -212,8 +221,8 @@ bool AxisymElement<P>::charged_tube(const Geometry& geometry, const TubeMaterial
     const auto jets = as_jets<N>(f);
     const auto phi_R = Jet<N>::variable(d_R, components + 1), phi_Z = Jet<N>::variable(d_Z, components + 2);
     Jet<N> stored = tube_energy(material, jets, Jet<N>::variable(pressure, components));
-    if (share > 0)
-      stored += electric_energy(share * material.permittivity, jets, phi_R, phi_Z);
+    if (field.share > 0)
+      stored += electric_energy(field.share * material.permittivity, jets, phi_R, phi_Z);
     else
       stored -= (0.5 * material.permittivity) * (phi_R * phi_R + phi_Z * phi_Z);
     if (!std::isfinite(stored.value)) return false;

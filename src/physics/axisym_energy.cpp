@@ -99,6 +99,17 @@ Jet<N> electric_energy(double permittivity, const Deformation<N>& f, const Jet<N
   return (-0.5 * permittivity) * ((r * r + z * z) * f.t / f.in_plane());
 }
 
+template <int N>
+Jet<N> closed_form_electric_energy(double permittivity, const Deformation<N>& f, double R, double inner,
+                                   double outer) {
+  const Jet<N> along = sqrt(f.rZ * f.rZ + f.zZ * f.zZ), radius = R * f.t, square = radius * radius;
+  const Jet<N> low = square * along - (R - inner) * (R + inner);  // rho_i^2 l
+  const Jet<N> growth = ((outer - inner) * (outer + inner)) * reciprocal(low);
+  const double r = 1 / (1 + growth.value);
+  const Jet<N> logarithm = 0.5 * compose(growth, std::log1p(growth.value), r, -r * r);
+  return (-0.5 * permittivity) * reciprocal(square * logarithm * logarithm);
+}
+
 LegMaterialLaw leg_material(const model::Leg& leg, const model::Segment& segment) {
   LegMaterialLaw law;
   law.kind = leg.material;
@@ -162,7 +173,7 @@ Jet<N> leg_energy(const LegMaterialLaw& law, const Deformation<N>& f) {
 template Jet<5> in_plane_powers(const Deformation<5>&, double);
 template Jet<6> tube_energy(const TubeMaterial&, const Deformation<6>&, const Jet<6>&);
 template Jet<8> tube_energy(const TubeMaterial&, const Deformation<8>&, const Jet<8>&);
-template Jet<6> electric_energy(double, const Deformation<6>&, const Jet<6>&, const Jet<6>&);
+template Jet<6> closed_form_electric_energy(double, const Deformation<6>&, double, double, double);
 template Jet<8> electric_energy(double, const Deformation<8>&, const Jet<8>&, const Jet<8>&);
 template Jet<5> leg_energy(const LegMaterialLaw&, const Deformation<5>&);
 

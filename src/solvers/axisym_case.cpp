@@ -14,6 +14,7 @@ constexpr double vacuum_permittivity = 8.8541878128e-12;  // [F/m]
 constexpr double weakest_spring = 1e-3;  // of the path to the frictionless state, of the shear modulus
 constexpr double strongest_spring = 10;
 constexpr int most_path_steps = 40;
+constexpr double finest_step = 0.01;  // of the path in the square of the voltage, of the full one
 
 bool good(const AxisymReport& report) {
   return report.converged && report.stable;
@@ -64,7 +65,7 @@ AxisymSummary AxisymCase<P>::actuated() {
   int iterations = 0;
   double reached = 0, step = 1;
   AxisymReport report;
-  for (int k = 0; reached < 1 && k < most_path_steps && step > 1e-3; ++k) {
+  for (int k = 0; reached < 1 && k < most_path_steps && step > finest_step; ++k) {
     petsc::check(VecCopy(x_.get(), kept_.get()));
     const double target = std::min(1.0, reached + step);
     system_->energise(target);
@@ -77,8 +78,12 @@ AxisymSummary AxisymCase<P>::actuated() {
       step *= 0.5;
     }
   }
+  // A path from the state at rest that ends on the way: there the branch of stable states ends.
   report.converged = reached == 1;
-  return summarise(report, iterations, true);
+  report.stable = report.converged;
+  AxisymSummary summary = summarise(report, iterations, true);
+  summary.stable_voltage = std::sqrt(reached);
+  return summary;
 }
 
 template <int P>

@@ -143,14 +143,39 @@ PetscErrorCode AxisymSystem<P>::add_contact(Vec residual, bool& admissible) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+template <int P>
+PetscErrorCode AxisymSystem<P>::add_spring(Vec residual) {
+  PetscFunctionBegin;
+  std::size_t place = first_spring_value_;
+  const int rank = petsc::rank(comm_), ranks = petsc::size(comm_);
+  for (std::size_t t = 0; t < tubes_.size(); ++t) {
+    const auto& nodes = space_.tubes[t].nodes;
+    for (std::size_t i = rank; i < nodes.size(); i += ranks, ++place) {
+      if (spring_ == 0 || nodes[i].u_z < 0) continue;
+      const double below = nodes[i].height - nodes[std::max<std::size_t>(i, 1) - 1].height;
+      const double above = nodes[std::min(i + 1, nodes.size() - 1)].height - nodes[i].height;
+      const double stiffness = spring_ * 0.5 * (below + above), slip = tubes_[t].height[i] - nodes[i].height;
+      values_[place] = stiffness;
+      energy_ += 0.5 * stiffness * slip * slip;
+      PetscCall(VecSetValue(residual, nodes[i].u_z, stiffness * slip, ADD_VALUES));
+    }
+  }
+  PetscCall(VecAssemblyBegin(residual));
+  PetscCall(VecAssemblyEnd(residual));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 template physics::ContactJet<2> AxisymSystem<2>::segment_potential(int, const physics::ContactSegment&,
                                                                    bool) const;
 template PetscErrorCode AxisymSystem<2>::add_contact(Vec, bool&);
+template PetscErrorCode AxisymSystem<2>::add_spring(Vec);
 template physics::ContactJet<3> AxisymSystem<3>::segment_potential(int, const physics::ContactSegment&,
                                                                    bool) const;
 template PetscErrorCode AxisymSystem<3>::add_contact(Vec, bool&);
+template PetscErrorCode AxisymSystem<3>::add_spring(Vec);
 template physics::ContactJet<4> AxisymSystem<4>::segment_potential(int, const physics::ContactSegment&,
                                                                    bool) const;
 template PetscErrorCode AxisymSystem<4>::add_contact(Vec, bool&);
+template PetscErrorCode AxisymSystem<4>::add_spring(Vec);
 
 }  // namespace gaiter::solvers

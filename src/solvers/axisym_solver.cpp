@@ -12,7 +12,7 @@ namespace {
 
 constexpr double longest_step = 0.1;     // of a displacement, over the leg's radius
 constexpr double step_tolerance = 1e-7;  // Newton is quadratic there: what is left is some 1e-14
-constexpr int most_iterations = 40;
+constexpr int most_iterations = 30;
 constexpr int most_halvings = 12;
 
 }  // namespace

@@ -249,37 +249,29 @@ class AxisymSpaceBuilder {
     PetscFunctionReturn(PETSC_SUCCESS);
   }
 
-  // Every rank tells what its cells know of the surfaces: block, place along the surface, global unknowns.
-  // The outer faces of the tubes are counted as blocks after all others.
+  // Every rank tells what its cells know of the contact surfaces: block, place along the surface, global
+  // unknowns.
   PetscErrorCode gather_surfaces(MPI_Comm comm) {
     PetscFunctionBegin;
-    constexpr int record = 5;  // surface, place, u_r, u_z, multiplier
-    const auto blocks = static_cast<int>(space_.mesh.blocks.size());
+    constexpr int record = 5;  // block, place, u_r, u_z, multiplier
     std::vector<PetscInt> mine, local, global;
-    const auto tell = [&](std::size_t c, int column, int surface, int corner) -> PetscErrorCode {
-      PetscFunctionBegin;
-      const AxisymCell<P>& cell = space_.cells[c];
-      for (int j = 0; j <= P; ++j) {
-        const int node = column + (P + 1) * j;
-        PetscInt carried = -1;
-        if ((j == 0 || j == P) && surface < blocks &&
-            space_.mesh.blocks[surface].tube == space_.choice.multipliers_on_tube) {
-          PetscCall(places(points_[c].corner[j == 0 ? corner : 3 - corner], multiplier, local, global));
-          carried = global[0];
-        }
-        for (PetscInt value : {PetscInt(surface), PetscInt(P * cell.row + j), cell.global[2 * node],
-                               cell.global[2 * node + 1], carried})
-          mine.push_back(value);
-      }
-      PetscFunctionReturn(PETSC_SUCCESS);
-    };
     for (std::size_t c = 0; c < points_.size(); ++c) {
       const AxisymCell<P>& cell = space_.cells[c];
       const AxisymBlock& block = space_.mesh.blocks[cell.block];
-      const bool first = cell.column == 0, last = cell.column + 1 == block.columns();
-      if (block.tube && first) PetscCall(tell(c, 0, cell.block, 0));
-      if (block.tube && last) PetscCall(tell(c, P, blocks + cell.block, 1));
-      if (!block.tube && last) PetscCall(tell(c, P, cell.block, 1));
+      const int column = block.tube ? 0 : P;
+      if (!touches(block, cell.column + (block.tube ? 0 : 1))) continue;
+      for (int j = 0; j <= P; ++j) {
+        const int node = column + (P + 1) * j;
+        PetscInt carried = -1;
+        if ((j == 0 || j == P) && block.tube == space_.choice.multipliers_on_tube) {
+          const int corner = block.tube ? (j == 0 ? 0 : 3) : (j == 0 ? 1 : 2);
+          PetscCall(places(points_[c].corner[corner], multiplier, local, global));
+          carried = global[0];
+        }
+        for (PetscInt value : {PetscInt(cell.block), PetscInt(P * cell.row + j), cell.global[2 * node],
+                               cell.global[2 * node + 1], carried})
+          mine.push_back(value);
+      }
     }
     const int ranks = petsc::size(comm), count = static_cast<int>(mine.size());
     std::vector<int> counts(ranks), offsets(ranks + 1, 0);
@@ -289,29 +281,22 @@ class AxisymSpaceBuilder {
     PetscCallMPI(MPI_Allgatherv(mine.data(), count, MPIU_INT, all.data(), counts.data(), offsets.data(),
                                 MPIU_INT, comm));
 
-    const auto surface_of = [&](int block, const std::vector<double>& radius) {
-      const auto& lobatto = physics::lobatto_points<P>();
-      const AxisymBlock& body = space_.mesh.blocks[block];
-      ContactSurface surface{block, std::vector<SurfaceNode>(P * body.rows() + 1)};
-      for (int place = 0; place <= P * body.rows(); ++place) {
-        const int row = std::min(place / P, body.rows() - 1);
+    const auto& lobatto = physics::lobatto_points<P>();
+    for (std::size_t b = 0; b < space_.mesh.blocks.size(); ++b) {
+      const AxisymBlock& block = space_.mesh.blocks[b];
+      ContactSurface surface{static_cast<int>(b), std::vector<SurfaceNode>(P * block.rows() + 1)};
+      const std::vector<double>& radius = block.tube ? block.inner : block.outer;
+      for (int place = 0; place <= P * block.rows(); ++place) {
+        const int row = std::min(place / P, block.rows() - 1);
         const double along = lobatto[place - P * row];
         surface.nodes[place].radius = radius[row] + along * (radius[row + 1] - radius[row]);
-        surface.nodes[place].height = body.height[row] + along * (body.height[row + 1] - body.height[row]);
+        surface.nodes[place].height = block.height[row] + along * (block.height[row + 1] - block.height[row]);
       }
-      return surface;
-    };
-    for (int b = 0; b < blocks; ++b) {
-      const AxisymBlock& block = space_.mesh.blocks[b];
-      (block.tube ? space_.tubes.emplace_back() : space_.leg) =
-          surface_of(b, block.tube ? block.inner : block.outer);
-      if (block.tube) space_.outer_faces.push_back(surface_of(b, block.outer));
+      (block.tube ? space_.tubes.emplace_back() : space_.leg) = std::move(surface);
     }
     for (std::size_t k = 0; k < all.size(); k += record) {
-      const PetscInt number = all[k];
-      ContactSurface& surface = number >= blocks                  ? space_.outer_faces[number - blocks]
-                                : space_.mesh.blocks[number].tube ? space_.tubes[number]
-                                                                  : space_.leg;
+      const auto block = static_cast<std::size_t>(all[k]);
+      ContactSurface& surface = space_.mesh.blocks[block].tube ? space_.tubes[block] : space_.leg;
       SurfaceNode& node = surface.nodes[all[k + 1]];
       node.u_r = all[k + 2];
       node.u_z = all[k + 3];

@@ -34,8 +34,7 @@ PetscErrorCode AxisymSystem<P>::create() {
   PetscCall(VecAssemblyBegin(local_x_.get()));
   PetscCall(VecAssemblyEnd(local_x_.get()));
 
-  // Surface values: u_r, u_z and multiplier of each node of the tubes, of the leg, and of the tubes' outer
-  // faces, on every rank.
+  // Surface values: u_r, u_z and multiplier of each node of the tubes, then of the leg, on every rank.
   const auto list = [&](const ContactSurface& surface) {
     for (const SurfaceNode& node : surface.nodes)
       for (PetscInt unknown : {node.u_r, node.u_z, node.multiplier}) surface_unknowns_.push_back(unknown);
@@ -46,7 +45,6 @@ PetscErrorCode AxisymSystem<P>::create() {
     first_tube_edge_.push_back(first_tube_edge_.back() + static_cast<int>(tube.nodes.size() - 1) / P);
   }
   list(space_.leg);
-  for (const ContactSurface& face : space_.outer_faces) list(face);
   std::vector<PetscInt> free;
   for (PetscInt unknown : surface_unknowns_)
     if (unknown >= 0) free.push_back(unknown);
@@ -83,7 +81,6 @@ PetscErrorCode AxisymSystem<P>::create() {
   };
   for (const ContactSurface& tube : space_.tubes) tubes_.push_back(rest(tube));
   leg_ = rest(space_.leg);
-  for (const ContactSurface& face : space_.outer_faces) outer_faces_.push_back(rest(face));
   PetscCall(preallocate());
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -120,19 +117,8 @@ std::vector<PetscInt> AxisymSystem<P>::unknowns_of(const Pair& pair) const {
   return unknowns;
 }
 
-template <int P>
-std::vector<PetscInt> AxisymSystem<P>::unknowns_across(std::size_t tube, std::size_t edge) const {
-  std::vector<PetscInt> unknowns;
-  for (const auto* face : {&space_.tubes[tube].nodes, &space_.outer_faces[tube].nodes}) {
-    for (int i = 0; i <= P; ++i) unknowns.push_back((*face)[P * edge + i].u_r);
-    for (int i = 0; i <= P; ++i) unknowns.push_back((*face)[P * edge + i].u_z);
-  }
-  return unknowns;
-}
-
 // The tangent's pattern: blocks of this rank's cells, then its share of the blocks of the pairs, of the
-// diagonals of the multipliers, of the blocks across the wall, and of the diagonals of the springs, in this
-// order in values_.
+// diagonals of the multipliers and of the springs, in this order in values_.
 template <int P>
 PetscErrorCode AxisymSystem<P>::preallocate() {
   PetscFunctionBegin;
@@ -154,11 +140,6 @@ PetscErrorCode AxisymSystem<P>::preallocate() {
       rows.push_back(surface_unknowns_[k]);
       columns.push_back(surface_unknowns_[k]);
     }
-  first_electrode_value_ = rows.size();
-  if (!space_.choice.layers)
-    for (std::size_t t = 0; t < space_.tubes.size(); ++t)
-      for (std::size_t e = rank; P * e + P < space_.tubes[t].nodes.size(); e += ranks)
-        add_block(unknowns_across(t, e));
   first_spring_value_ = rows.size();
   for (const ContactSurface& tube : space_.tubes)
     for (std::size_t i = rank; i < tube.nodes.size(); i += ranks) {
@@ -189,7 +170,6 @@ PetscErrorCode AxisymSystem<P>::read_surfaces(Vec x) {
   };
   for (std::size_t t = 0; t < tubes_.size(); ++t) read(space_.tubes[t], tubes_[t]);
   read(space_.leg, leg_);
-  for (std::size_t t = 0; t < outer_faces_.size(); ++t) read(space_.outer_faces[t], outer_faces_[t]);
   PetscCall(VecRestoreArrayRead(surface_values_.get(), &values));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -203,7 +183,6 @@ PetscErrorCode AxisymSystem<P>::evaluate(Vec x, Vec residual, bool& admissible) 
   PetscCall(read_surfaces(x));
   std::fill(values_.begin(), values_.end(), 0.0);
   PetscCall(add_contact(residual, admissible));
-  PetscCall(add_electrodes(residual, admissible));
   PetscCall(add_spring(residual));
   PetscCall(add_cells(x, residual, admissible));
   admissible = petsc::agree(comm_, admissible);
@@ -244,10 +223,11 @@ PetscErrorCode AxisymSystem<P>::add_cells(Vec x, Vec residual, bool& admissible)
       fine = Element::leg(cell.geometry, materials_.leg[block.segment[cell.row]], unknowns.data(), energy,
                           forces.data(), tangent);
     else if (space_.choice.layers)
-      fine = Element::charged_tube(cell.geometry, materials_.tube, energised_, unknowns.data(), energy,
+      fine = Element::charged_tube(cell.geometry, materials_.tube, {energised_}, unknowns.data(), energy,
                                    forces.data(), tangent);
     else
-      fine = Element::tube(cell.geometry, materials_.tube, unknowns.data(), energy, forces.data(), tangent);
+      fine = Element::tube(cell.geometry, materials_.tube, {energised_, block.inner[0], block.outer[0]},
+                           unknowns.data(), energy, forces.data(), tangent);
     admissible = admissible && fine;
     energy_ += energy;
     for (std::size_t i = 0; i < cell.local.size(); ++i) out[cell.local[i]] += forces[i];

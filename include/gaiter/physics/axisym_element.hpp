@@ -27,20 +27,27 @@ struct AxisymElement {
     std::array<std::array<double, nodes>, points> d_R{}, d_Z{}, over_R{};  // dN/dR, dN/dZ, N/R at each point
     std::array<std::array<double, pressures>, points> pressure{};
     std::array<double, points> weight{};                  // 2 pi R |Jacobian| x Gauss weight
+    std::array<double, points> radius{};                  // R of the points
     std::array<std::array<double, 2>, nodes> position{};  // (R, Z) of the nodes
     std::array<std::array<double, 2>, points> place{};    // local coordinates of the points
     std::array<double, points> share{};                   // Gauss weights, sum 1
   };
   static Geometry geometry(const std::array<std::array<double, 2>, 4>& corners);
 
+  // The share of the field's energy that acts on a wall, and its reference radii.
+  struct WallField {
+    double share = 0;
+    double inner_radius = 0, outer_radius = 0;
+  };
+
   // Potential energy, residual and tangent (row by row, symmetric) of an element. False where the element is
-  // inverted or its numbers are not finite: the trial is inadmissible.
-  static bool tube(const Geometry& geometry, const TubeMaterial& material, const double* unknowns,
-                   double& energy, double* residual, double* tangent);
-  // The same with the electric potential, over the voltage, as an unknown; `share` is the share of the
-  // field's energy that acts on the wall. At 0 the potential is that of the undeformed wall, so that its rows
-  // never vanish.
-  static bool charged_tube(const Geometry& geometry, const TubeMaterial& material, double share,
+  // inverted or its numbers are not finite: the trial is inadmissible. The tube's electric field is the
+  // closed form across the wall.
+  static bool tube(const Geometry& geometry, const TubeMaterial& material, const WallField& field,
+                   const double* unknowns, double& energy, double* residual, double* tangent);
+  // The same with the electric potential, over the voltage, as an unknown. Without a share of the field the
+  // potential is that of the undeformed wall, so that its rows never vanish.
+  static bool charged_tube(const Geometry& geometry, const TubeMaterial& material, const WallField& field,
                            const double* unknowns, double& energy, double* residual, double* tangent);
   static bool leg(const Geometry& geometry, const LegMaterialLaw& law, const double* unknowns, double& energy,
                   double* residual, double* tangent);

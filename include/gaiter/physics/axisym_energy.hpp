@@ -49,6 +49,14 @@ template <int N>
 Jet<N> electric_energy(double permittivity, const Deformation<N>& f, const Jet<N>& phi_R,
                        const Jet<N>& phi_Z);
 
+// The same for the field across a wall that keeps its volume, in closed form: between electrodes at the
+// reference radii `inner` and `outer`, at the reference radius R between them. With rho = r the current
+// radius and l the stretch of the line along Z, the faces are at rho_i^2 = rho^2 - (R^2 - inner^2)/l and so
+// on, and the energy per reference volume is - permittivity/2 / (rho ln(rho_o/rho_i))^2.
+template <int N>
+Jet<N> closed_form_electric_energy(double permittivity, const Deformation<N>& f, double R, double inner,
+                                   double outer);
+
 // Leg: W = G/2 (I1 - 3 - 2 ln J) + U(J), with U' = -P(1 - sqrt J) - G (1 - 1/J) and P the inverse of the
 // strain law, so that uniform radial compression at fixed length gives paper Eq. (2); or neo-Hookean W = G/2
 // (J^{-2/3} I1 - 3) + K/2 (J - 1)^2.

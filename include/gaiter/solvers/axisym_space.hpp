@@ -47,9 +47,8 @@ template <int P>
 struct AxisymSpace {
   AxisymMesh mesh;
   Plex plex;
-  std::vector<AxisymCell<P>> cells;         // of this rank
-  std::vector<ContactSurface> tubes;        // one a tube block
-  std::vector<ContactSurface> outer_faces;  // of the tubes; no multipliers
+  std::vector<AxisymCell<P>> cells;   // of this rank
+  std::vector<ContactSurface> tubes;  // one a tube block
   ContactSurface leg;
   SpaceChoice choice;
   PetscInt pressures = 0, multipliers = 0, potentials = 0;  // over all ranks

@@ -71,12 +71,10 @@ class AxisymSystem {
   PetscErrorCode create();
   PetscErrorCode preallocate();
   std::vector<PetscInt> unknowns_of(const Pair& pair) const;
-  std::vector<PetscInt> unknowns_across(std::size_t tube, std::size_t edge) const;
   void list_pairs();
   PetscErrorCode read_surfaces(Vec x);
   PetscErrorCode add_cells(Vec x, Vec residual, bool& admissible);
   PetscErrorCode add_contact(Vec residual, bool& admissible);
-  PetscErrorCode add_electrodes(Vec residual, bool& admissible);
   PetscErrorCode add_spring(Vec residual);
   physics::ContactJet<P> segment_potential(int tube, const physics::ContactSegment& segment,
                                            bool effective) const;
@@ -91,11 +89,10 @@ class AxisymSystem {
 
   std::vector<SurfaceState> tubes_;
   SurfaceState leg_;
-  std::vector<SurfaceState> outer_faces_;
   std::vector<Pair> pairs_;   // all, the same on every rank
   std::vector<int> pair_at_;  // [tube edge over all tubes][leg edge] -> pair, -1: none
   std::vector<int> first_tube_edge_;
-  std::size_t cell_values_ = 0, first_electrode_value_ = 0, first_spring_value_ = 0;  // of values_
+  std::size_t cell_values_ = 0, first_spring_value_ = 0;  // of values_
   std::vector<PetscScalar> values_;
   double energy_ = 0, spring_ = 0, energised_ = 0;
   int active_changes_ = 0;
