@@ -17,3 +17,4 @@ function(gaiter_axisym_test NAME)
 endfunction()
 
 gaiter_axisym_test(axisym_jacobian LABEL jacobian)
+gaiter_axisym_test(axisym_locking LABEL convergence)
