@@ -18,3 +18,5 @@ endfunction()
 
 gaiter_axisym_test(axisym_jacobian LABEL jacobian)
 gaiter_axisym_test(axisym_locking LABEL convergence)
+gaiter_axisym_test(axisym_convergence LABEL convergence)
+gaiter_axisym_test(axisym_press_fit LABEL convergence)
