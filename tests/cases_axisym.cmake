@@ -7,3 +7,16 @@ foreach(RANKS 1 2)
   gaiter_add_test(axisym_reference_on_${RANKS} LABEL cross RANKS ${RANKS} TIMEOUT 300
                   COMMAND $<TARGET_FILE:axisym_reference>)
 endforeach()
+
+# On cylinders and cones, on one rank: gaiter_axisym_test(NAME LABEL convergence)
+function(gaiter_axisym_test NAME)
+  cmake_parse_arguments(ARG "" "LABEL" "" ${ARGN})
+  add_executable(${NAME} ${NAME}.cpp session_main.cpp)
+  target_link_libraries(${NAME} PRIVATE gaiter_solvers GTest::gtest)
+  gaiter_add_test(${NAME} LABEL ${ARG_LABEL} TIMEOUT 120 COMMAND ${NAME})
+endfunction()
+
+gaiter_axisym_test(axisym_jacobian LABEL jacobian)
+gaiter_axisym_test(axisym_locking LABEL convergence)
+gaiter_axisym_test(axisym_convergence LABEL convergence)
+gaiter_axisym_test(axisym_press_fit LABEL convergence)

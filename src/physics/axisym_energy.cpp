@@ -157,6 +157,7 @@ PressureOfStrain pressure_of_strain(const LegMaterialLaw& law, double strain) {
 
 template <int N>
 Jet<N> leg_energy(const LegMaterialLaw& law, const Deformation<N>& f) {
+  if (law.other) return law.other(law, f);
   const Jet<N> volume = f.volume();
   const Jet<N> first = squares(f) + f.t * f.t;  // I1
   if (law.kind == model::LegMaterial::neo_hookean)

@@ -129,6 +129,7 @@ PetscErrorCode AxisymSystem<P>::add_contact(Vec residual, bool& admissible) {
       if (unknown >= 0 && !state.active[i]) {
         const double weight = (*areas)[i] > 0 ? (*areas)[i] : 1;
         values_[place] = -weight;
+        energy_ -= 0.5 * weight * state.multiplier[i] * state.multiplier[i];
         PetscCall(VecSetValue(residual, unknown, -weight * state.multiplier[i], ADD_VALUES));
       }
       ++place;

@@ -160,6 +160,7 @@ PetscErrorCode AxisymSolver<P>::step(SNESLineSearch search, void* context) {
   if (!admissible) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecCopy(trial, x));
   self.last_step_ = length * largest;
+  self.report_.steps.push_back(self.last_step_);
   self.full_step_ = length == 1;
   PetscReal x_norm = 0, f_norm = 0, y_norm = 0;
   PetscCall(VecNorm(x, NORM_2, &x_norm));

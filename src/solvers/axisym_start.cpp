@@ -23,6 +23,7 @@ constexpr int wall_points = 8;
 struct WallState {
   double inner_reference, inner, pressure;  // A, a, P; lengths and stresses in one unit each
   const std::vector<model::OgdenTerm>& ogden;
+  bool compressible = false;  // the pressure field is then the mean stress
 
   double deformed(double R) const {
     return std::sqrt(inner * inner + (R - inner_reference) * (R + inner_reference));
@@ -40,7 +41,11 @@ struct WallState {
       radial += rule.weights[g] * (R - inner_reference) * difference * at / (rho * rho);
     }
     const double stretch = deformed(R) / R;
-    for (const auto& term : ogden) radial -= term.mu * std::pow(stretch, -term.alpha);
+    for (const auto& term : ogden) {
+      const double around = std::pow(stretch, term.alpha), across = 1 / around;
+      radial -= term.mu * across;
+      if (compressible) radial += term.mu * (around + across + 1) / 3;
+    }
     return radial;
   }
 };
@@ -141,7 +146,8 @@ PetscErrorCode set_slice_start(const AxisymSystem<P>& system, const std::vector<
                                 along_R * (block.across[cell.column + 1] - block.across[cell.column]));
       const WallState wall{inner_reference, interpolate<P>(state.tube_radius, cell.row, along_Z) / length,
                            interpolate<P>(state.pressure, cell.row, along_Z) / stress,
-                           system.materials().tube.ogden};
+                           system.materials().tube.ogden,
+                           std::isfinite(system.materials().tube.bulk_modulus)};
       const double pressure = wall.pressure_field(R);
       for (int q = 0; q < Element::pressures; ++q) {
         moment[q] += cell.geometry.share[g] * pressure * cell.geometry.pressure[g][q];

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-2-Clause
 #pragma once
 
+#include <vector>
+
 #include "gaiter/solvers/axisym_system.hpp"
 
 namespace gaiter::solvers {
@@ -11,6 +13,7 @@ struct AxisymReport {
   bool stable = true;  // the tangent has as many negative pivots as pressures and multipliers (where known)
   bool inertia_known = false;
   int iterations = 0;
+  std::vector<double> steps{};  // largest displacement of each iteration, over the leg's radius
   double assembly_seconds = 0;  // of the whole solve, residuals and tangents
 };
 

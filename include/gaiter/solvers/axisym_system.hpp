@@ -18,7 +18,9 @@ struct AxisymMaterials {
 // one potential
 //   sum of element energies - sum_k lambda_k G_k,
 // so that the tangent is symmetric. A multiplier is active while lambda_k - c G_k / (area of its hat) > 0;
-// the row of one that is not reads lambda_k = 0, and it presses on nothing.
+// the row of one that is not reads lambda_k = 0, and it presses on nothing: in the potential, - area
+// lambda_k^2 / 2 stands for - lambda_k G_k, whose dependence on the area is left out, as lambda_k is 0 after
+// one full step.
 template <int P>
 class AxisymSystem {
  public:
