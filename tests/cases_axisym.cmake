@@ -7,3 +7,10 @@ foreach(RANKS 1 2)
   gaiter_add_test(axisym_reference_on_${RANKS} LABEL cross RANKS ${RANKS} TIMEOUT 300
                   COMMAND $<TARGET_FILE:axisym_reference>)
 endforeach()
+
+add_executable(axisym_fields axisym_fields.cpp session_main.cpp)
+target_link_libraries(axisym_fields PRIVATE gaiter_solvers GTest::gtest)
+foreach(RANKS 1 2 3)
+  gaiter_add_test(axisym_fields_on_${RANKS} LABEL properties RANKS ${RANKS} TIMEOUT 120
+                  COMMAND $<TARGET_FILE:axisym_fields>)
+endforeach()

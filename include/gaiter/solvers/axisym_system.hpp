@@ -36,6 +36,7 @@ class AxisymSystem {
   // Reference gradients of the potential over V at the Gauss points of each cell of this rank; empty: no
   // voltage.
   void set_field(std::vector<typename physics::AxisymElement<P>::Field> field) { field_ = std::move(field); }
+  const std::vector<typename physics::AxisymElement<P>::Field>& field() const { return field_; }
 
   // A spring, per length of the tubes' inner faces, that holds them at their reference height: 0 for the
   // model itself, a path to it where Newton's method needs one. In units of stress.
