@@ -14,3 +14,7 @@ foreach(RANKS 1 2 3)
   gaiter_add_test(axisym_fields_on_${RANKS} LABEL properties RANKS ${RANKS} TIMEOUT 120
                   COMMAND $<TARGET_FILE:axisym_fields>)
 endforeach()
+
+# The program, and VTK's reader of what it writes.
+gaiter_program_test(axisym_view LABEL command_line)
+set_tests_properties(axisym_view PROPERTIES PROCESSORS 2)
