@@ -27,7 +27,7 @@ packages=(
   libopenmpi-dev openmpi-bin libhdf5-openmpi-dev libopenblas0-serial
   libudunits2-dev libspdlog-dev libfmt-dev libboost-dev
   libgtest-dev libbenchmark-dev
-  python3 python3-numpy python3-xarray python3-h5netcdf python3-h5py python3-matplotlib
+  python3 python3-numpy python3-xarray python3-h5netcdf python3-h5py python3-matplotlib python3-vtk9
 )
 # Debian's PETSc brings a SLEPc and a MUMPS that fit it; a PETSc of your own brings its own.
 if [[ -z ${PETSC_DIR:-} ]]; then

@@ -128,9 +128,9 @@ TEST(CheckWritable, NamesValueAndReason) {
     return message_of<base::InputError>([&] { check_writable(path); });
   };
   EXPECT_EQ(refusal("no/such/paper.h5"), "-output no/such/paper.h5: the folder no/such does not exist");
-  EXPECT_EQ(refusal("paper.nc"), "-output paper.nc: the name of an archive ends in .h5");
-  EXPECT_EQ(refusal(".h5"), "-output .h5: the name of an archive ends in .h5");
-  EXPECT_EQ(refusal(""), "-output : the name of an archive ends in .h5");
+  EXPECT_EQ(refusal("paper.nc"), "-output paper.nc: the name must end in .h5");
+  EXPECT_EQ(refusal(".h5"), "-output .h5: the name must end in .h5");
+  EXPECT_EQ(refusal(""), "-output : the name must end in .h5");
   EXPECT_EQ(refusal(folder),
             "-output " + folder + ": this is a folder; give the name of a file that ends in .h5");
   // Root may write to every ordinary folder, but no one can make a file here.

@@ -78,7 +78,7 @@ Errors errors(const solvers::AxisymSpace<P>& space, const std::vector<double>& x
   result.displacement = std::sqrt(result.displacement / displacement);
   result.pressure = std::sqrt(result.pressure / pressure);
   result.leg /= std::fabs(exact.leg_stretch - 1);
-  const auto& carrier = space.multipliers_on_tube ? space.tubes[0] : space.leg;
+  const auto& carrier = space.choice.multipliers_on_tube ? space.tubes[0] : space.leg;
   for (const auto& node : carrier.nodes)
     if (node.multiplier >= 0)
       result.contact = std::max(result.contact, std::fabs(x[node.multiplier] / exact.contact - 1));

@@ -62,7 +62,7 @@ ContactIntegrals contact_integrals(const solvers::AxisymSystem<P>& system) {
   };
   using Pair = std::array<double, 2>;
   const Surface& tube = system.tubes()[0];
-  const Surface& carrier = system.space().multipliers_on_tube ? tube : system.leg();
+  const Surface& carrier = system.space().choice.multipliers_on_tube ? tube : system.leg();
   const double height = tube.height.back();
   const auto along_height = [](double p, Pair, Pair z) { return p * z[1]; };
   ContactIntegrals sum;

@@ -77,7 +77,7 @@ class RandomStates {
     petsc::check(system.assemble());
     EXPECT_LT(relative_asymmetry(system.matrix()), 1e-14);
     const double energy = system.energy();
-    const auto& carrier = system.space().multipliers_on_tube ? system.tubes()[0] : system.leg();
+    const auto& carrier = system.space().choice.multipliers_on_tube ? system.tubes()[0] : system.leg();
     int active = 0, vertices = 0;
     for (std::size_t i = 0; i < carrier.active.size(); i += P, ++vertices) active += carrier.active[i];
     EXPECT_GT(active, 0);
@@ -135,7 +135,7 @@ class RandomStates {
           direction[place] = uniform(-small, small);
         }
     std::vector<bool> multiplier(state.size(), false);
-    const auto& carrier = space.multipliers_on_tube ? space.tubes[0] : space.leg;
+    const auto& carrier = space.choice.multipliers_on_tube ? space.tubes[0] : space.leg;
     for (const auto& node : carrier.nodes)
       if (node.multiplier >= 0) {
         multiplier[node.multiplier] = true;

@@ -47,8 +47,8 @@ struct Problem {
       : system(
             PETSC_COMM_SELF,
             solvers::AxisymSpace<P>::make(PETSC_COMM_SELF, solvers::make_axisym_mesh(scene, 0, 0, resolution),
-                                          scene.axisym.multipliers == model::ContactSide::tube,
-                                          scene.contact_axial == model::ContactAxial::held),
+                                          {scene.axisym.multipliers == model::ContactSide::tube,
+                                           scene.contact_axial == model::ContactAxial::held}),
             std::move(materials)) {
     petsc::check(DMCreateGlobalVector(system.space().plex.get(), x.out()));
   }

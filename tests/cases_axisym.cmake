@@ -20,3 +20,14 @@ gaiter_axisym_test(axisym_jacobian LABEL jacobian)
 gaiter_axisym_test(axisym_locking LABEL convergence)
 gaiter_axisym_test(axisym_convergence LABEL convergence)
 gaiter_axisym_test(axisym_press_fit LABEL convergence)
+
+add_executable(axisym_fields axisym_fields.cpp session_main.cpp)
+target_link_libraries(axisym_fields PRIVATE gaiter_solvers GTest::gtest)
+foreach(RANKS 1 2 3)
+  gaiter_add_test(axisym_fields_on_${RANKS} LABEL properties RANKS ${RANKS} TIMEOUT 120
+                  COMMAND $<TARGET_FILE:axisym_fields>)
+endforeach()
+
+# The program, and VTK's reader of what it writes.
+gaiter_program_test(axisym_view LABEL command_line)
+set_tests_properties(axisym_view PROPERTIES PROCESSORS 2)

@@ -55,6 +55,16 @@ CASES = {
                      ["-bandage_bulk_modulus", "greater than"]),
     "misspelt option of the finite elements": (
         ["solve", *SCENE, "-fidelity", "axisym", "-axisym_snes_stoll", "1"], ["-axisym_snes_stoll"]),
+    "fields of slices": (["solve", *SCENE, "-axisym_view", "view.hdf"], ["-axisym_view 'view.hdf'", "-fidelity 'axisym'"]),
+    "fields of a sweep": (["sweep", *SCENE, "-fidelity", "axisym", "-sweep_voltage", "1,2", "-axisym_view", "view.hdf"],
+                          ["-axisym_view 'view.hdf'", "the command solve"]),
+    "fields in an archive": (["solve", *SCENE, "-fidelity", "axisym", "-axisym_view", "view.h5"],
+                             ["-axisym_view 'view.h5'", ".hdf or .vtkhdf"]),
+    "fields in a missing folder": (["solve", *SCENE, "-fidelity", "axisym", "-axisym_view", "nowhere/view.hdf"],
+                                   ["-axisym_view nowhere/view_r6_rest.hdf", "the folder nowhere does not exist"]),
+    "fields over a folder": (["solve", *SCENE, "-fidelity", "axisym", "-axisym_view", "view.hdf"],
+                             ["-axisym_view view_r1_rest.hdf", "this is a folder"]),
+    "fields without a name": (["solve", *SCENE, "-fidelity", "axisym", "-axisym_view"], ["-axisym_view", "missing"]),
     "comparison with another leg": (["solve", "-options_file", STOCKING, "-comparison", "paper"],
                                     ["-comparison 'paper'", "six segments"]),
     "no scene": (["solve"], ["-leg_segments is missing"]),
@@ -100,7 +110,7 @@ CASES = {
 }
 # One of each place where a mistake is found; the other cases differ in words alone.
 ON_TWO_RANKS = ["no command", "word too many", "misspelt option", "stretch 0", "options file missing", "broken YAML",
-                "output in a missing folder", "unknown type", "tolerance out of range", "monitor to a missing folder", "log to a missing folder",
+                "output in a missing folder", "fields in a missing folder", "unknown type", "tolerance out of range", "monitor to a missing folder", "log to a missing folder",
                 "value that PETSc cannot start with", "PETSc's start in a file"]
 FILES = {
     "misspelt.yaml": "bandage:\n  thicknes: 1 mm\n",
@@ -118,7 +128,7 @@ class WrongInput(InFolder):
         super().setUp()
         for name, text in FILES.items():
             self.write(name, text)
-        for name in ("folder", "folder.h5"):
+        for name in ("folder", "folder.h5", "view_r1_rest.hdf"):
             (self.folder / name).mkdir()
         self.before = self.everything()
 

@@ -37,16 +37,16 @@ void bring_to_disk(const std::string& path, int flags) {
 
 }  // namespace
 
-void check_writable(const std::string& path) {
+void check_writable(const std::string& path, const std::string& option, const std::string& ending) {
   const auto refuse = [&](const std::string& reason) {
-    throw base::InputError("-output " + path + ": " + reason);
+    throw base::InputError(option + " " + path + ": " + reason);
   };
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) {
-    refuse("this is a folder; give the name of a file that ends in .h5");
+    refuse("this is a folder; give the name of a file that ends in " + ending);
   }
-  if (std::filesystem::path(path).extension() != ".h5") {
-    refuse("the name of an archive ends in .h5");
+  if (std::filesystem::path(path).extension() != ending) {
+    refuse("the name must end in " + ending);
   }
   if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored)) {
     refuse("this is there already and is not a file that can be replaced");

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gaiter/physics/axisym_point.hpp"
 #include "gaiter/physics/quadrature.hpp"
 
 namespace gaiter::physics {
@@ -29,32 +30,6 @@ void legendre(double x, std::array<double, P>& value) {
   value[0] = 1;
   if constexpr (P > 1) value[1] = x;
   for (int n = 2; n < P; ++n) value[n] = ((2 * n - 1) * x * value[n - 1] - (n - 1) * value[n - 2]) / n;
-}
-
-// Components of the deformation at a Gauss point and how they depend on the unknowns: rR, rZ and t on the u_r
-// of the nodes through d_R, d_Z, over_R; zR and zZ on the u_z. The pressure, the sixth, on the pressure
-// unknowns.
-constexpr int components = 5;
-
-template <int P>
-std::array<double, components> deformation(const typename AxisymElement<P>::Geometry& geometry, int point,
-                                           const double* u) {
-  std::array<double, components> f{1, 0, 0, 1, 1};
-  for (int a = 0; a < AxisymElement<P>::nodes; ++a) {
-    const double r = u[2 * a], z = u[2 * a + 1];
-    f[0] += geometry.d_R[point][a] * r;
-    f[1] += geometry.d_Z[point][a] * r;
-    f[2] += geometry.d_R[point][a] * z;
-    f[3] += geometry.d_Z[point][a] * z;
-    f[4] += geometry.over_R[point][a] * r;
-  }
-  return f;
-}
-
-template <int N>
-Deformation<N> as_jets(const std::array<double, components>& f) {
-  return {Jet<N>::variable(f[0], 0), Jet<N>::variable(f[1], 1), Jet<N>::variable(f[2], 2),
-          Jet<N>::variable(f[3], 3), Jet<N>::variable(f[4], 4)};
 }
 
 bool admissible(const std::array<double, components>& f) {
@@ -175,28 +150,16 @@ typename AxisymElement<P>::Geometry AxisymElement<P>::geometry(
 template <int P>
 bool AxisymElement<P>::tube(const Geometry& geometry, const TubeMaterial& material, const WallField& field,
                             const double* unknowns, double& energy, double* residual, double* tangent) {
-  constexpr int N = components + 1;
   std::fill_n(residual, tube_unknowns, 0.0);
   std::fill_n(tangent, tube_unknowns * tube_unknowns, 0.0);
   energy = 0;
   for (int point = 0; point < points; ++point) {
     const auto f = deformation<P>(geometry, point, unknowns);
     if (!admissible(f)) return false;
-    double pressure = 0;
-    for (int q = 0; q < pressures; ++q) pressure += geometry.pressure[point][q] * unknowns[2 * nodes + q];
-    const auto jets = as_jets<N>(f);
-    Jet<N> stored = tube_energy(material, jets, Jet<N>::variable(pressure, components));
-    if (field.share > 0) {
-      const double wall = field.outer_radius - field.inner_radius, R = geometry.radius[point];
-      const auto layer = [&](int k) { return field.inner_radius + k * wall / material.layers; };
-      const int k = std::clamp(static_cast<int>((R - field.inner_radius) / wall * material.layers), 0,
-                               material.layers - 1);
-      stored +=
-          closed_form_electric_energy(field.share * material.permittivity, jets, R, layer(k), layer(k + 1));
-    }
+    const auto stored = tube_energy_at<P>(geometry, material, field, unknowns, point, f);
     if (!std::isfinite(stored.value)) return false;
     energy += geometry.weight[point] * stored.value;
-    scatter<P, N>(geometry, point, stored, geometry.weight[point], tube_unknowns, residual, tangent);
+    scatter<P>(geometry, point, stored, geometry.weight[point], tube_unknowns, residual, tangent);
   }
   return true;
 }
@@ -205,29 +168,16 @@ template <int P>
 bool AxisymElement<P>::charged_tube(const Geometry& geometry, const TubeMaterial& material,
                                     const WallField& field, const double* unknowns, double& energy,
                                     double* residual, double* tangent) {
-  constexpr int N = components + 3;
   std::fill_n(residual, charged_unknowns, 0.0);
   std::fill_n(tangent, charged_unknowns * charged_unknowns, 0.0);
   energy = 0;
   for (int point = 0; point < points; ++point) {
     const auto f = deformation<P>(geometry, point, unknowns);
     if (!admissible(f)) return false;
-    double pressure = 0, d_R = 0, d_Z = 0;
-    for (int q = 0; q < pressures; ++q) pressure += geometry.pressure[point][q] * unknowns[2 * nodes + q];
-    for (int a = 0; a < nodes; ++a) {
-      d_R += geometry.d_R[point][a] * unknowns[tube_unknowns + a];
-      d_Z += geometry.d_Z[point][a] * unknowns[tube_unknowns + a];
-    }
-    const auto jets = as_jets<N>(f);
-    const auto phi_R = Jet<N>::variable(d_R, components + 1), phi_Z = Jet<N>::variable(d_Z, components + 2);
-    Jet<N> stored = tube_energy(material, jets, Jet<N>::variable(pressure, components));
-    if (field.share > 0)
-      stored += electric_energy(field.share * material.permittivity, jets, phi_R, phi_Z);
-    else
-      stored -= (0.5 * material.permittivity) * (phi_R * phi_R + phi_Z * phi_Z);
+    const auto stored = charged_tube_energy_at<P>(geometry, material, field, unknowns, point, f);
     if (!std::isfinite(stored.value)) return false;
     energy += geometry.weight[point] * stored.value;
-    scatter<P, N>(geometry, point, stored, geometry.weight[point], charged_unknowns, residual, tangent);
+    scatter<P>(geometry, point, stored, geometry.weight[point], charged_unknowns, residual, tangent);
   }
   return true;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "gaiter/petsc/check.hpp"
+#include "gaiter/petsc/session.hpp"
 
 namespace gaiter::solvers {
 
@@ -84,6 +85,13 @@ AxisymSummary AxisymCase<P>::actuated() {
   AxisymSummary summary = summarise(report, iterations, true);
   summary.stable_voltage = std::sqrt(reached);
   return summary;
+}
+
+template <int P>
+void AxisymCase<P>::show(bool actuated, const AxisymObserver& observer) const {
+  AxisymFields fields = extract_fields(*system_, x_.get());
+  fields.actuated = actuated;
+  if (petsc::rank(system_->comm()) == 0) observer(std::move(fields));
 }
 
 template <int P>

@@ -18,23 +18,25 @@ struct Solved {
 };
 
 template <int P>
-Solved solve_states(MPI_Comm comm, const SegmentTask& task, int refine) {
+Solved solve_states(MPI_Comm comm, const SegmentTask& task, int refine, const AxisymObserver& observer) {
   AxisymCase<P> problem(comm, *task.scene, task.segment, refine);
   Solved solved;
   solved.rest = problem.rest();
+  if (observer && solved.rest.converged) problem.show(false, observer);
   const bool voltage = task.scene->bandage.modules[task.segment].voltage != 0;
   solved.actuated = voltage && solved.rest.converged ? problem.actuated() : solved.rest;
+  if (observer && voltage && solved.actuated.converged) problem.show(true, observer);
   return solved;
 }
 
-Solved solve_states(MPI_Comm comm, const SegmentTask& task, int refine) {
+Solved solve_states(MPI_Comm comm, const SegmentTask& task, int refine, const AxisymObserver& observer = {}) {
   switch (task.scene->axisym.order) {
     case 3:
-      return solve_states<3>(comm, task, refine);
+      return solve_states<3>(comm, task, refine, observer);
     case 4:
-      return solve_states<4>(comm, task, refine);
+      return solve_states<4>(comm, task, refine, observer);
     default:
-      return solve_states<2>(comm, task, refine);
+      return solve_states<2>(comm, task, refine, observer);
   }
 }
 
@@ -52,12 +54,12 @@ Status status_of(const Solved& solved, const model::Scene& scene, double unit) {
   return Status::contact;
 }
 
-model::SegmentResult solve_task(MPI_Comm comm, const SegmentTask& task) {
+model::SegmentResult solve_task(MPI_Comm comm, const SegmentTask& task, const AxisymObserver& observer) {
   const model::Scene& scene = *task.scene;
   const model::Segment& segment = scene.leg.segments[task.segment];
   const double unit = axisym_stress_unit(scene.bandage), length = segment.mean_radius();
   const int refine = scene.axisym.refine;
-  const Solved fine = solve_states(comm, task, refine);
+  const Solved fine = solve_states(comm, task, refine, observer);
 
   // The pressures on a rigid leg are the slices'; so are those that nothing else gives.
   model::Scene slices = scene;
@@ -102,9 +104,10 @@ model::SegmentResult solve_task(MPI_Comm comm, const SegmentTask& task) {
 
 }  // namespace
 
-std::vector<model::SegmentResult> solve_axisym(MPI_Comm comm, std::span<const SegmentTask> tasks) {
+std::vector<model::SegmentResult> solve_axisym(MPI_Comm comm, std::span<const SegmentTask> tasks,
+                                               const AxisymObserver& observer) {
   std::vector<model::SegmentResult> results;
-  for (const SegmentTask& task : tasks) results.push_back(solve_task(comm, task));
+  for (const SegmentTask& task : tasks) results.push_back(solve_task(comm, task, observer));
   return results;
 }
 

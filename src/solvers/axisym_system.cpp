@@ -28,11 +28,6 @@ PetscErrorCode AxisymSystem<P>::create() {
   DM dm = space_.plex.get();
   PetscCall(DMCreateLocalVector(dm, local_x_.out()));
   PetscCall(DMCreateLocalVector(dm, local_residual_.out()));
-  PetscCall(VecSet(local_x_.get(), 0));
-  for (const auto& [place, potential] : space_.electrodes)
-    PetscCall(VecSetValue(local_x_.get(), place, potential, INSERT_VALUES));
-  PetscCall(VecAssemblyBegin(local_x_.get()));
-  PetscCall(VecAssemblyEnd(local_x_.get()));
 
   // Surface values: u_r, u_z and multiplier of each node of the tubes, then of the leg, on every rank.
   const auto list = [&](const ContactSurface& surface) {
@@ -197,6 +192,18 @@ PetscErrorCode AxisymSystem<P>::assemble() {
 }
 
 template <int P>
+PetscErrorCode AxisymSystem<P>::fill_local(Vec x, Vec local) const {
+  PetscFunctionBegin;
+  PetscCall(VecSet(local, 0));
+  PetscCall(DMGlobalToLocal(space_.plex.get(), x, INSERT_VALUES, local));
+  PetscScalar* values = nullptr;
+  PetscCall(VecGetArray(local, &values));
+  for (const auto& [place, potential] : space_.electrodes) values[place] = potential;
+  PetscCall(VecRestoreArray(local, &values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template <int P>
 double AxisymSystem<P>::energy() const {
   return petsc::sum(comm_, energy_);
 }
@@ -205,7 +212,7 @@ template <int P>
 PetscErrorCode AxisymSystem<P>::add_cells(Vec x, Vec residual, bool& admissible) {
   PetscFunctionBegin;
   DM dm = space_.plex.get();
-  PetscCall(DMGlobalToLocal(dm, x, INSERT_VALUES, local_x_.get()));
+  PetscCall(fill_local(x, local_x_.get()));
   PetscCall(VecSet(local_residual_.get(), 0));
   const PetscScalar* in = nullptr;
   PetscScalar* out = nullptr;
@@ -223,11 +230,11 @@ PetscErrorCode AxisymSystem<P>::add_cells(Vec x, Vec residual, bool& admissible)
       fine = Element::leg(cell.geometry, materials_.leg[block.segment[cell.row]], unknowns.data(), energy,
                           forces.data(), tangent);
     else if (space_.choice.layers)
-      fine = Element::charged_tube(cell.geometry, materials_.tube, {energised_}, unknowns.data(), energy,
+      fine = Element::charged_tube(cell.geometry, materials_.tube, field(block), unknowns.data(), energy,
                                    forces.data(), tangent);
     else
-      fine = Element::tube(cell.geometry, materials_.tube, {energised_, block.inner[0], block.outer[0]},
-                           unknowns.data(), energy, forces.data(), tangent);
+      fine = Element::tube(cell.geometry, materials_.tube, field(block), unknowns.data(), energy,
+                           forces.data(), tangent);
     admissible = admissible && fine;
     energy_ += energy;
     for (std::size_t i = 0; i < cell.local.size(); ++i) out[cell.local[i]] += forces[i];

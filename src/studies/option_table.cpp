@@ -58,6 +58,15 @@ std::vector<Option> make_table() {
        .default_text = "1",
        .doc = "Uniform refinements of the coarsest finite element mesh (some 600 unknowns a segment).",
        .set = [](Scene& s, std::size_t, Values v) { s.axisym.refine = static_cast<int>(v[0]); }},
+      {.name = "axisym_view",
+       .kind = Kind::text,
+       .scope = Scope::program,
+       .format = "a file name that ends in .hdf or .vtkhdf",
+       .example = "view.hdf",
+       .doc = "Fields of the finite elements for ParaView (VTKHDF), in view_rest.hdf and view_actuated.hdf; "
+              "with "
+              "several segments in view_<s>_rest.hdf and view_<s>_actuated.hdf.",
+       .commands = {Command::solve}},
       {.name = "bandage_<s>_length",
        .scope = Scope::one_segment,
        .components = {{.unit = "m", .range = {.low = 1e-6, .high = 1000}}},

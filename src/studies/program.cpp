@@ -9,6 +9,7 @@
 #include "gaiter/archive/writer.hpp"
 #include "gaiter/base/error.hpp"
 #include "gaiter/base/version.hpp"
+#include "gaiter/studies/axisym_view.hpp"
 #include "gaiter/studies/help.hpp"
 #include "gaiter/studies/paper_comparison.hpp"
 #include "gaiter/studies/result_table.hpp"
@@ -23,16 +24,17 @@ namespace {
 constexpr std::size_t most_tables = 10;  // designs of a sweep that are printed one by one
 
 // Every rank looks, for each may sit on a machine of its own; all refuse together.
-void check_writable(const std::string& output) {
+void check_writable(const Request& request) {
   std::string refusal;
   try {
-    archive::check_writable(output);
+    archive::check_writable(request.output);
+    check_views_writable(request);
   } catch (const base::InputError& error) {
     refusal = error.what();
   }
   if (petsc::agree(PETSC_COMM_WORLD, refusal.empty())) return;
   throw base::InputError(!refusal.empty() ? refusal
-                                          : "-output " + output + ": some ranks cannot write there");
+                                          : "-output " + request.output + ": some ranks cannot write there");
 }
 
 archive::Layout layout_of(const Request& request, const Designs& designs) {
@@ -99,6 +101,7 @@ ExitCode run_program(petsc::Session& session, const CommandLine& line) {
   for (const std::string& file : line.options_files) session.insert_options_file(file);
   const auto given = session.unused_options();
   Request request = parse_request(command, given);
+  check_views(command, request);
   ForeignOptions foreign;
   for (const std::string& name : request.unknown) foreign[name] = given.at(name);
   for (const auto& [name, text] : given)
@@ -113,12 +116,18 @@ ExitCode run_program(petsc::Session& session, const CommandLine& line) {
                  request.scene.leg.segments.size());
     return success;
   }
-  check_writable(request.output);
+  check_writable(request);
 
-  const Solution solution = solve_designs(PETSC_COMM_WORLD, request.scene, designs);
+  std::vector<solvers::AxisymFields> fields;
+  solvers::AxisymObserver observer;
+  if (!request.axisym_view.empty())
+    observer = [&](solvers::AxisymFields found) { fields.push_back(std::move(found)); };
+  const Solution solution = solve_designs(PETSC_COMM_WORLD, request.scene, designs, observer);
   const std::array<double, 7> counts = count_status(PETSC_COMM_WORLD, solution);
   write_archive(request, designs, line, solution);
+  const std::string views = write_views(PETSC_COMM_WORLD, request, fields);
   print_results(request, designs, solution, counts);
+  if (printing) fmt::print("{}", views);
   const bool trustworthy = counts[static_cast<std::size_t>(model::Status::no_equilibrium)] +
                                counts[static_cast<std::size_t>(model::Status::diverged)] ==
                            0;

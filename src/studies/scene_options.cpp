@@ -116,9 +116,8 @@ void Parser::read_segments() {
     for (const auto& [lower_name, given] : given_) request_.unknown.push_back(given.name);
     missing(entry, "leg_segments");
   }
-  auto& scene = request_.scene;
-  scene.leg.segments = parse_segments(found->second.name, found->second.text);
-  scene.bandage.modules.resize(scene.leg.segments.size());
+  request_.scene.leg.segments = parse_segments(found->second.name, found->second.text);
+  request_.scene.bandage.modules.resize(request_.scene.leg.segments.size());
 }
 
 std::optional<Parser::Match> Parser::match(std::string_view lower_name, const Given& given) const {
@@ -161,9 +160,10 @@ void Parser::read_settings() {
     const std::string name = name_for(entry, request_.scene.leg.segments[found->segment].name);
     if (entry.kind != Kind::text) {
       settings_[name] = {&entry, found->segment, parse_values(entry, given.name, given.text)};
-    } else if (name == "output") {
-      request_.output = base::trim(given.text);
-      if (request_.output.empty()) throw value_error(entry, given.name, given.text, "a value is missing");
+    } else if (name == "output" || name == "axisym_view") {
+      std::string& path = name == "output" ? request_.output : request_.axisym_view;
+      path = base::trim(given.text);
+      if (path.empty()) throw value_error(entry, given.name, given.text, "a value is missing");
     } else if (name == "options_file" || name == "help") {
       // Those of the command line are taken from it before PETSc sees them.
       throw InputError(fmt::format("-{} '{}': belongs on the command line, not in an options file",

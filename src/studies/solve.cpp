@@ -31,7 +31,8 @@ class Groups {
 
 }  // namespace
 
-Solution solve_designs(MPI_Comm comm, const model::Scene& scene, const Designs& designs) {
+Solution solve_designs(MPI_Comm comm, const model::Scene& scene, const Designs& designs,
+                       const solvers::AxisymObserver& observer) {
   const bool axisym = scene.fidelity == model::Fidelity::axisym;
   const Groups groups(comm, axisym ? scene.axisym.ranks_per_case : 1);
   const std::size_t segments = scene.leg.segments.size();
@@ -53,7 +54,7 @@ Solution solve_designs(MPI_Comm comm, const model::Scene& scene, const Designs& 
   // Ranks without tasks take part too, and all scenes have the fidelity of the one given.
   Solution solution{first, {}, 0};
   if (axisym)
-    solution.rows = solvers::solve_axisym(groups.group, tasks);
+    solution.rows = solvers::solve_axisym(groups.group, tasks, observer);
   else if (scene.fidelity == model::Fidelity::sliding)
     solution.rows = solvers::solve_sliding(comm, tasks);
   else

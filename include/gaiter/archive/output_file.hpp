@@ -6,9 +6,11 @@
 
 namespace gaiter::archive {
 
-// Throws base::InputError unless an archive can be written at `path`: a name ending in .h5, in a folder that
-// exists and takes new files. Meant to be called before any work is done; one rank is enough.
-void check_writable(const std::string& path);
+// Throws base::InputError unless a file can be written at `path`, which the user gave to `option`: a name
+// with this ending, in a folder that exists and takes new files. Meant to be called before any work is done;
+// one rank is enough.
+void check_writable(const std::string& path, const std::string& option = "-output",
+                    const std::string& ending = ".h5");
 
 // A file that is written beside its final name and gets that name only when it is finished.
 class OutputFile {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "gaiter/solvers/axisym_fields.hpp"
 #include "gaiter/solvers/axisym_solver.hpp"
 #include "gaiter/solvers/axisym_start.hpp"
 #include "gaiter/solvers/axisym_summary.hpp"
@@ -24,6 +25,9 @@ class AxisymCase {
 
   AxisymSummary rest();      // @note Collective.
   AxisymSummary actuated();  // from the state at rest, which comes first. @note Collective.
+
+  // Hands the fields of the state last found over, on rank 0. @note Collective.
+  void show(bool actuated, const AxisymObserver& observer) const;
 
  private:
   AxisymMaterials materials(double length) const;

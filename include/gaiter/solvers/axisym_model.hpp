@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gaiter/model/result.hpp"
+#include "gaiter/solvers/axisym_fields.hpp"
 #include "gaiter/solvers/slice_model.hpp"
 
 namespace gaiter::solvers {
@@ -14,8 +15,11 @@ namespace gaiter::solvers {
 // The axisymmetric contact model of one segment after the other, each distributed over `comm`; every rank of
 // it gives the same tasks and gets all results. `error_estimate` compares with the mesh one refinement
 // coarser; `iterations` is the most Newton steps of rest or actuated state, steps of a continuation included.
+// The observer, which all ranks give or none, is called on rank 0 with the fields of the states found: of a
+// task at rest, then, if it has a voltage, actuated.
 // @note Collective.
-std::vector<model::SegmentResult> solve_axisym(MPI_Comm comm, std::span<const SegmentTask> tasks);
+std::vector<model::SegmentResult> solve_axisym(MPI_Comm comm, std::span<const SegmentTask> tasks,
+                                               const AxisymObserver& observer = {});
 
 // Sets the solver of a task up and drops it, so that it asks for all its options. @note Collective.
 void try_axisym(MPI_Comm comm, const SegmentTask& task);

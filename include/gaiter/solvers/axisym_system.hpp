@@ -32,12 +32,18 @@ class AxisymSystem {
   PetscErrorCode evaluate(Vec x, Vec residual, bool& admissible);
   PetscErrorCode assemble();
 
+  // A local Vec of the DM from x, the fixed unknowns included. @note Collective.
+  PetscErrorCode fill_local(Vec x, Vec local) const;
+
   // Potential at the last x evaluated. @note Collective.
   double energy() const;
 
   // The share of the electric field's energy that acts: 0 no voltage, 1 the full one; linear in the voltage's
   // square. The field is that of the space's potential if it has one, else the closed form across the wall.
   void energise(double share) { energised_ = share; }
+  typename physics::AxisymElement<P>::WallField field(const AxisymBlock& tube) const {
+    return {energised_, tube.inner[0], tube.outer[0]};
+  }
 
   // A spring, per length of the tubes' inner faces, that holds them at their reference height: 0 for the
   // model itself, a path to it where Newton's method needs one. In units of stress.

@@ -14,8 +14,9 @@ namespace gaiter::studies {
 
 // What the user asks for, read from the options and checked.
 struct Request {
-  model::Scene scene;  // of a sweep: its first design
-  std::string output;  // file name of the archive
+  model::Scene scene;       // of a sweep: its first design
+  std::string output;       // file name of the archive
+  std::string axisym_view;  // file name from which those of the finite element fields are made; empty: none
   bool dry_run = false;
   Comparison comparison = Comparison::none;
   std::vector<SweepAxis> axes;       // sorted by name; empty for solve

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gaiter/model/result.hpp"
+#include "gaiter/solvers/axisym_fields.hpp"
 #include "gaiter/studies/designs.hpp"
 
 namespace gaiter::studies {
@@ -19,8 +20,10 @@ struct Solution {
   double seconds = 0;                      // the whole solve took
 };
 
-// Solves all designs of a scene at its fidelity. @note Collective.
-Solution solve_designs(MPI_Comm comm, const model::Scene& scene, const Designs& designs);
+// Solves all designs of a scene at its fidelity. The observer is for finite elements: see solve_axisym.
+// @note Collective.
+Solution solve_designs(MPI_Comm comm, const model::Scene& scene, const Designs& designs,
+                       const solvers::AxisymObserver& observer = {});
 
 // All rows, on rank 0; elsewhere none. @note Collective.
 std::vector<model::SegmentResult> gather(MPI_Comm comm, const Solution& solution);
