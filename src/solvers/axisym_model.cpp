@@ -70,6 +70,12 @@ class AxisymCase {
     return summarise(report, iterations, false);
   }
 
+  // One linear solve at the start.
+  void try_solver() {
+    petsc::check(set_slice_start<P>(*system_, states(false), x_.get()));
+    solver_->try_at(x_.get());
+  }
+
   // From the state at rest, which x holds.
   StateSummary actuated() {
     if (scene_.axisym.electrostatics == model::Electrostatics::off) return summarise({true}, 0, false);
@@ -372,7 +378,7 @@ std::vector<model::SegmentResult> solve_axisym(MPI_Comm comm, std::span<const Se
 }
 
 void try_axisym(MPI_Comm comm, const SegmentTask& task) {
-  AxisymCase<2>(comm, *task.scene, task.segment, 0);
+  AxisymCase<2>(comm, *task.scene, task.segment, 0).try_solver();
 }
 
 }  // namespace gaiter::solvers

@@ -2,7 +2,6 @@
 #include "gaiter/solvers/axisym_solver.hpp"
 
 #include <cmath>
-#include <cstring>
 
 #include "gaiter/petsc/check.hpp"
 
@@ -20,6 +19,7 @@ constexpr int most_halvings = 12;
 template <int P>
 AxisymSolver<P>::AxisymSolver(AxisymSystem<P>& system) : system_(system) {
   petsc::check(create());
+  linear_.require_available();
 }
 
 template <int P>
@@ -38,41 +38,12 @@ PetscErrorCode AxisymSolver<P>::create() {
   PetscCall(SNESLineSearchSetType(search, SNESLINESEARCHSHELL));
   PetscCall(SNESLineSearchShellSetUserFunc(search, step, this));
   KSP ksp = nullptr;
-  PC pc = nullptr;
   PetscCall(SNESGetKSP(snes, &ksp));
-  PetscCall(KSPSetType(ksp, KSPPREONLY));
-  PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(PCSetType(pc, PCCHOLESKY));
-  PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  PetscCall(linear_.create(system_.space().plex.get(), system_.matrix(), ksp));
   PetscCall(SNESSetFromOptions(snes));
   PetscCall(SNESGetTolerances(snes, nullptr, nullptr, &step_tolerance_, nullptr, nullptr));
-  PetscCall(uses_mumps(&counts_pivots_));
-  if (counts_pivots_) {
-    // MUMPS does not count the negative pivots of a root that it factorises in parallel, and its guess of the
-    // workspace is too small where many pivots have to be delayed.
-    Mat factor = nullptr;
-    PetscCall(KSPSetOperators(ksp, system_.matrix(), system_.matrix()));
-    PetscCall(PCFactorSetUpMatSolverType(pc));
-    PetscCall(PCFactorGetMatrix(pc, &factor));
-    PetscCall(MatMumpsSetIcntl(factor, 13, 1));
-    PetscCall(MatMumpsSetIcntl(factor, 14, 200));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-// Whether the tangent is factorised by MUMPS as a symmetric matrix, options considered.
-template <int P>
-PetscErrorCode AxisymSolver<P>::uses_mumps(bool* yes) const {
-  PetscFunctionBegin;
-  KSP ksp = nullptr;
-  PC pc = nullptr;
-  PetscBool cholesky = PETSC_FALSE;
-  MatSolverType type = nullptr;
-  PetscCall(SNESGetKSP(snes_.get(), &ksp));
-  PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCCHOLESKY, &cholesky));
-  if (cholesky) PetscCall(PCFactorGetMatSolverType(pc, &type));
-  *yes = type && std::strcmp(type, MATSOLVERMUMPS) == 0;
+  PetscCall(linear_.prepare());
+  pattern_ = system_.pattern();
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -86,7 +57,6 @@ AxisymReport AxisymSolver<P>::solve(Vec x) {
 template <int P>
 PetscErrorCode AxisymSolver<P>::run(Vec x, AxisymReport& report) {
   PetscFunctionBegin;
-  report_ = {};
   last_step_ = 0;
   full_step_ = false;
   PetscCall(SNESSolve(snes_.get(), nullptr, x));
@@ -94,23 +64,43 @@ PetscErrorCode AxisymSolver<P>::run(Vec x, AxisymReport& report) {
   PetscInt iterations = 0;
   PetscCall(SNESGetConvergedReason(snes_.get(), &reason));
   PetscCall(SNESGetIterationNumber(snes_.get(), &iterations));
-  report = report_;
   report.converged = reason > 0;
   report.iterations = static_cast<int>(iterations);
-
-  if (report.converged && counts_pivots_) {
-    // The inertia of the last tangent factorised, which is that of the solution but for the last, tiny step.
-    KSP ksp = nullptr;
-    PC pc = nullptr;
-    Mat factor = nullptr;
+  if (report.converged) {
+    // Of the last tangent made, which is that of the solution but for the last, tiny step.
     PetscInt negative = 0;
-    PetscCall(SNESGetKSP(snes_.get(), &ksp));
-    PetscCall(KSPGetPC(ksp, &pc));
-    PetscCall(PCFactorGetMatrix(pc, &factor));
-    PetscCall(MatMumpsGetInfog(factor, 12, &negative));
-    report.inertia_known = true;
+    PetscCall(linear_.count_negative(&negative));
     report.stable = negative == system_.space().pressures + system_.space().multipliers;
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template <int P>
+void AxisymSolver<P>::try_at(Vec x) {
+  petsc::check(solve_once(x));
+}
+
+template <int P>
+PetscErrorCode AxisymSolver<P>::solve_once(Vec x) {
+  PetscFunctionBegin;
+  KSP ksp = nullptr;
+  bool admissible = true;
+  petsc::Vector direction;
+  PetscCall(VecDuplicate(x, direction.out()));
+  PetscCall(system_.evaluate(x, residual_.get(), admissible));
+  PetscCall(assemble());
+  PetscCall(SNESGetKSP(snes_.get(), &ksp));
+  PetscCall(KSPSetOperators(ksp, system_.matrix(), system_.matrix()));
+  PetscCall(KSPSolve(ksp, residual_.get(), direction.get()));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template <int P>
+PetscErrorCode AxisymSolver<P>::assemble() {
+  PetscFunctionBegin;
+  PetscCall(system_.assemble());
+  if (pattern_ != system_.pattern()) PetscCall(linear_.renew());
+  pattern_ = system_.pattern();
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -119,9 +109,7 @@ PetscErrorCode AxisymSolver<P>::form_function(SNES snes, Vec x, Vec f, void* con
   PetscFunctionBegin;
   auto& self = *static_cast<AxisymSolver*>(context);
   bool admissible = true;
-  const double start = MPI_Wtime();
   PetscCall(self.system_.evaluate(x, f, admissible));
-  self.report_.assembly_seconds += MPI_Wtime() - start;
   if (!admissible) PetscCall(SNESSetFunctionDomainError(snes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -131,9 +119,7 @@ PetscErrorCode AxisymSolver<P>::form_jacobian(SNES, Vec, Mat, Mat, void* context
   PetscFunctionBegin;
   auto& self = *static_cast<AxisymSolver*>(context);
   // evaluate() was last called at this x: with the first residual, or with the step taken.
-  const double start = MPI_Wtime();
-  PetscCall(self.system_.assemble());
-  self.report_.assembly_seconds += MPI_Wtime() - start;
+  PetscCall(self.assemble());
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -147,13 +133,11 @@ PetscErrorCode AxisymSolver<P>::step(SNESLineSearch search, void* context) {
   PetscCall(self.system_.largest_displacement(y, largest));
   double length = largest > longest_step ? longest_step / largest : 1;
   bool admissible = false;
-  const double start = MPI_Wtime();
   for (int halving = 0; std::isfinite(largest) && halving < most_halvings; ++halving, length *= 0.5) {
     PetscCall(VecWAXPY(trial, -length, y, x));
     PetscCall(self.system_.evaluate(trial, f, admissible));
     if (admissible) break;
   }
-  self.report_.assembly_seconds += MPI_Wtime() - start;
   PetscCall(SNESLineSearchSetReason(search,
                                     admissible ? SNES_LINESEARCH_SUCCEEDED : SNES_LINESEARCH_FAILED_DOMAIN));
   if (!admissible) PetscFunctionReturn(PETSC_SUCCESS);

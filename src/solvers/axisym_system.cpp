@@ -118,6 +118,7 @@ std::vector<PetscInt> AxisymSystem<P>::unknowns_of(const Pair& pair) const {
 template <int P>
 PetscErrorCode AxisymSystem<P>::preallocate() {
   PetscFunctionBegin;
+  ++pattern_;
   list_pairs();
   std::vector<PetscInt> rows, columns;
   const auto add_block = [&](const std::vector<PetscInt>& unknowns) {
