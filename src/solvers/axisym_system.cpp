@@ -6,6 +6,7 @@
 
 #include "gaiter/petsc/check.hpp"
 #include "gaiter/petsc/session.hpp"
+#include "gaiter/solvers/axisym_events.hpp"
 
 namespace gaiter::solvers {
 
@@ -179,9 +180,13 @@ PetscErrorCode AxisymSystem<P>::evaluate(Vec x, Vec residual, bool& admissible) 
   PetscCall(VecSet(residual, 0));
   PetscCall(read_surfaces(x));
   std::fill(values_.begin(), values_.end(), 0.0);
+  PetscCall(PetscLogEventBegin(axisym_events().contact, 0, 0, 0, 0));
   PetscCall(add_contact(residual, admissible));
+  PetscCall(PetscLogEventEnd(axisym_events().contact, 0, 0, 0, 0));
   PetscCall(add_spring(residual));
+  PetscCall(PetscLogEventBegin(axisym_events().cells, 0, 0, 0, 0));
   PetscCall(add_cells(x, residual, admissible));
+  PetscCall(PetscLogEventEnd(axisym_events().cells, 0, 0, 0, 0));
   admissible = petsc::agree(comm_, admissible);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
