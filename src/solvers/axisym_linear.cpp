@@ -17,15 +17,13 @@ namespace {
 
 using IndexSet = petsc::Handle<IS, ISDestroy>;
 
-constexpr int ordering = 7, sequential_root = 13, workspace_increase = 14;  // of MUMPS' ICNTL
-constexpr int negative_pivots = 12;                                         // of MUMPS' INFOG
+constexpr int sequential_root = 13, workspace_increase = 14;  // of MUMPS' ICNTL
+constexpr int negative_pivots = 12;                           // of MUMPS' INFOG
 
 // MUMPS does not count the negative pivots of a root that it factorises in parallel, and its guess of the
-// workspace is too small where many pivots have to be delayed. Approximate minimum degree is faster to find
-// here than what MUMPS would choose, and gives fewer entries and flops on all our meshes.
+// workspace is too small where many pivots have to be delayed.
 PetscErrorCode set_mumps(Mat factor) {
   PetscFunctionBegin;
-  PetscCall(MatMumpsSetIcntl(factor, ordering, 0));
   PetscCall(MatMumpsSetIcntl(factor, sequential_root, 1));
   PetscCall(MatMumpsSetIcntl(factor, workspace_increase, 200));
   PetscFunctionReturn(PETSC_SUCCESS);
