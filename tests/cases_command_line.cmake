@@ -10,6 +10,8 @@ endfunction()
 
 gaiter_program_test(command_line LABEL command_line)
 gaiter_program_test(wrong_input LABEL command_line)
+gaiter_program_test(axisym_solvers LABEL command_line)
+set_tests_properties(axisym_solvers PROPERTIES PROCESSORS 2)
 gaiter_program_test(same_archive LABEL properties)
 set_tests_properties(same_archive PROPERTIES PROCESSORS 3)
 gaiter_program_test(readme LABEL command_line)

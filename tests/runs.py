@@ -12,7 +12,8 @@ import numpy as np
 
 GAITER, MPIEXEC, SOURCE = sys.argv[1], sys.argv[2], pathlib.Path(sys.argv[3])
 SCENES = sorted((SOURCE / "options" / "scenes").glob("*.yaml"))
-SOLVERS = sorted((SOURCE / "options" / "solvers").glob("*.yaml"))
+AXISYM_SOLVERS = sorted((SOURCE / "options" / "solvers").glob("axisym_*.yaml"))
+SOLVERS = sorted(set((SOURCE / "options" / "solvers").glob("*.yaml")) - set(AXISYM_SOLVERS))  # of slices
 PAPER = str(SOURCE / "options" / "scenes" / "paper.yaml")
 # What may differ between archives of the same study: when and on how many ranks it ran, how long, and the words.
 OF_THE_RUN = {"wall_time", "created", "ranks", "command"}

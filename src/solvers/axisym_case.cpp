@@ -52,6 +52,12 @@ AxisymCase<P>::AxisymCase(MPI_Comm comm, const model::Scene& scene, std::size_t 
 }
 
 template <int P>
+void AxisymCase<P>::try_solver() {
+  petsc::check(set_slice_start<P>(*system_, states(false), x_.get()));
+  solver_->try_at(x_.get());
+}
+
+template <int P>
 AxisymSummary AxisymCase<P>::rest() {
   petsc::check(set_slice_start<P>(*system_, states(false), x_.get()));
   AxisymReport report = solver_->solve(x_.get());

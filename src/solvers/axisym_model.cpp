@@ -112,7 +112,7 @@ std::vector<model::SegmentResult> solve_axisym(MPI_Comm comm, std::span<const Se
 }
 
 void try_axisym(MPI_Comm comm, const SegmentTask& task) {
-  AxisymCase<2>(comm, *task.scene, task.segment, 0);
+  AxisymCase<2>(comm, *task.scene, task.segment, 0).try_solver();
 }
 
 }  // namespace gaiter::solvers

@@ -2,7 +2,6 @@
 #include "gaiter/solvers/axisym_solver.hpp"
 
 #include <cmath>
-#include <cstring>
 
 #include "gaiter/petsc/check.hpp"
 
@@ -20,6 +19,7 @@ constexpr int most_halvings = 12;
 template <int P>
 AxisymSolver<P>::AxisymSolver(AxisymSystem<P>& system) : system_(system) {
   petsc::check(create());
+  linear_.require_available();
 }
 
 template <int P>
@@ -38,41 +38,12 @@ PetscErrorCode AxisymSolver<P>::create() {
   PetscCall(SNESLineSearchSetType(search, SNESLINESEARCHSHELL));
   PetscCall(SNESLineSearchShellSetUserFunc(search, step, this));
   KSP ksp = nullptr;
-  PC pc = nullptr;
   PetscCall(SNESGetKSP(snes, &ksp));
-  PetscCall(KSPSetType(ksp, KSPPREONLY));
-  PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(PCSetType(pc, PCCHOLESKY));
-  PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  PetscCall(linear_.create(system_.space().plex.get(), system_.matrix(), ksp));
   PetscCall(SNESSetFromOptions(snes));
   PetscCall(SNESGetTolerances(snes, nullptr, nullptr, &step_tolerance_, nullptr, nullptr));
-  PetscCall(uses_mumps(&counts_pivots_));
-  if (counts_pivots_) {
-    // MUMPS does not count the negative pivots of a root that it factorises in parallel, and its guess of the
-    // workspace is too small where many pivots have to be delayed.
-    Mat factor = nullptr;
-    PetscCall(KSPSetOperators(ksp, system_.matrix(), system_.matrix()));
-    PetscCall(PCFactorSetUpMatSolverType(pc));
-    PetscCall(PCFactorGetMatrix(pc, &factor));
-    PetscCall(MatMumpsSetIcntl(factor, 13, 1));
-    PetscCall(MatMumpsSetIcntl(factor, 14, 200));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-// Whether the tangent is factorised by MUMPS as a symmetric matrix, options considered.
-template <int P>
-PetscErrorCode AxisymSolver<P>::uses_mumps(bool* yes) const {
-  PetscFunctionBegin;
-  KSP ksp = nullptr;
-  PC pc = nullptr;
-  PetscBool cholesky = PETSC_FALSE;
-  MatSolverType type = nullptr;
-  PetscCall(SNESGetKSP(snes_.get(), &ksp));
-  PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCCHOLESKY, &cholesky));
-  if (cholesky) PetscCall(PCFactorGetMatSolverType(pc, &type));
-  *yes = type && std::strcmp(type, MATSOLVERMUMPS) == 0;
+  PetscCall(linear_.prepare());
+  pattern_ = system_.pattern();
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -86,32 +57,51 @@ AxisymReport AxisymSolver<P>::solve(Vec x) {
 template <int P>
 PetscErrorCode AxisymSolver<P>::run(Vec x, AxisymReport& report) {
   PetscFunctionBegin;
-  report_ = {};
-  last_step_ = 0;
+  steps_.clear();
   full_step_ = false;
   PetscCall(SNESSolve(snes_.get(), nullptr, x));
   SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
   PetscInt iterations = 0;
   PetscCall(SNESGetConvergedReason(snes_.get(), &reason));
   PetscCall(SNESGetIterationNumber(snes_.get(), &iterations));
-  report = report_;
+  report.steps = steps_;
   report.converged = reason > 0;
   report.iterations = static_cast<int>(iterations);
-
-  if (report.converged && counts_pivots_) {
-    // The inertia of the last tangent factorised, which is that of the solution but for the last, tiny step.
-    KSP ksp = nullptr;
-    PC pc = nullptr;
-    Mat factor = nullptr;
+  if (report.converged) {
+    // Of the last tangent made, which is that of the solution but for the last, tiny step.
     PetscInt negative = 0;
-    PetscCall(SNESGetKSP(snes_.get(), &ksp));
-    PetscCall(KSPGetPC(ksp, &pc));
-    PetscCall(PCFactorGetMatrix(pc, &factor));
-    PetscCall(MatMumpsGetInfog(factor, 12, &negative));
-    report.inertia_known = true;
-    report.stable =
-        negative == system_.space().pressures + system_.space().multipliers + system_.space().potentials;
+    PetscCall(linear_.count_negative(&negative));
+    report.stable = negative == system_.space().negative_eigenvalues();
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template <int P>
+void AxisymSolver<P>::try_at(Vec x) {
+  petsc::check(solve_once(x));
+}
+
+template <int P>
+PetscErrorCode AxisymSolver<P>::solve_once(Vec x) {
+  PetscFunctionBegin;
+  KSP ksp = nullptr;
+  bool admissible = true;
+  petsc::Vector direction;
+  PetscCall(VecDuplicate(x, direction.out()));
+  PetscCall(system_.evaluate(x, residual_.get(), admissible));
+  PetscCall(assemble());
+  PetscCall(SNESGetKSP(snes_.get(), &ksp));
+  PetscCall(KSPSetOperators(ksp, system_.matrix(), system_.matrix()));
+  PetscCall(KSPSolve(ksp, residual_.get(), direction.get()));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template <int P>
+PetscErrorCode AxisymSolver<P>::assemble() {
+  PetscFunctionBegin;
+  PetscCall(system_.assemble());
+  if (pattern_ != system_.pattern()) PetscCall(linear_.renew());
+  pattern_ = system_.pattern();
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -120,9 +110,7 @@ PetscErrorCode AxisymSolver<P>::form_function(SNES snes, Vec x, Vec f, void* con
   PetscFunctionBegin;
   auto& self = *static_cast<AxisymSolver*>(context);
   bool admissible = true;
-  const double start = MPI_Wtime();
   PetscCall(self.system_.evaluate(x, f, admissible));
-  self.report_.assembly_seconds += MPI_Wtime() - start;
   if (!admissible) PetscCall(SNESSetFunctionDomainError(snes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -132,9 +120,7 @@ PetscErrorCode AxisymSolver<P>::form_jacobian(SNES, Vec, Mat, Mat, void* context
   PetscFunctionBegin;
   auto& self = *static_cast<AxisymSolver*>(context);
   // evaluate() was last called at this x: with the first residual, or with the step taken.
-  const double start = MPI_Wtime();
-  PetscCall(self.system_.assemble());
-  self.report_.assembly_seconds += MPI_Wtime() - start;
+  PetscCall(self.assemble());
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -148,19 +134,16 @@ PetscErrorCode AxisymSolver<P>::step(SNESLineSearch search, void* context) {
   PetscCall(self.system_.largest_displacement(y, largest));
   double length = largest > longest_step ? longest_step / largest : 1;
   bool admissible = false;
-  const double start = MPI_Wtime();
   for (int halving = 0; std::isfinite(largest) && halving < most_halvings; ++halving, length *= 0.5) {
     PetscCall(VecWAXPY(trial, -length, y, x));
     PetscCall(self.system_.evaluate(trial, f, admissible));
     if (admissible) break;
   }
-  self.report_.assembly_seconds += MPI_Wtime() - start;
   PetscCall(SNESLineSearchSetReason(search,
                                     admissible ? SNES_LINESEARCH_SUCCEEDED : SNES_LINESEARCH_FAILED_DOMAIN));
   if (!admissible) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecCopy(trial, x));
-  self.last_step_ = length * largest;
-  self.report_.steps.push_back(self.last_step_);
+  self.steps_.push_back(length * largest);
   self.full_step_ = length == 1;
   PetscReal x_norm = 0, f_norm = 0, y_norm = 0;
   PetscCall(VecNorm(x, NORM_2, &x_norm));
@@ -179,11 +162,11 @@ PetscErrorCode AxisymSolver<P>::converged(SNES snes, PetscInt iteration, PetscRe
   *reason = SNES_CONVERGED_ITERATING;
   if (!std::isfinite(residual_norm))
     *reason = SNES_DIVERGED_FNORM_NAN;
-  else if (iteration > 0 && self.full_step_ && self.last_step_ < self.step_tolerance_ &&
+  else if (iteration > 0 && self.full_step_ && self.steps_.back() < self.step_tolerance_ &&
            self.system_.active_changes() == 0)
     *reason = SNES_CONVERGED_SNORM_RELATIVE;
   PetscCall(
-      PetscInfo(snes, "step %g, contacts changed %d\n", self.last_step_, self.system_.active_changes()));
+      PetscInfo(snes, "step %g, contacts changed %d\n", self.steps_.empty() ? 0.0 : self.steps_.back(), self.system_.active_changes()));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -6,6 +6,7 @@
 
 #include "gaiter/petsc/check.hpp"
 #include "gaiter/petsc/session.hpp"
+#include "gaiter/solvers/axisym_events.hpp"
 
 namespace gaiter::solvers {
 
@@ -117,6 +118,7 @@ std::vector<PetscInt> AxisymSystem<P>::unknowns_of(const Pair& pair) const {
 template <int P>
 PetscErrorCode AxisymSystem<P>::preallocate() {
   PetscFunctionBegin;
+  ++pattern_;
   list_pairs();
   std::vector<PetscInt> rows, columns;
   const auto add_block = [&](const std::vector<PetscInt>& unknowns) {
@@ -177,9 +179,13 @@ PetscErrorCode AxisymSystem<P>::evaluate(Vec x, Vec residual, bool& admissible) 
   PetscCall(VecSet(residual, 0));
   PetscCall(read_surfaces(x));
   std::fill(values_.begin(), values_.end(), 0.0);
+  PetscCall(PetscLogEventBegin(axisym_events().contact, 0, 0, 0, 0));
   PetscCall(add_contact(residual, admissible));
+  PetscCall(PetscLogEventEnd(axisym_events().contact, 0, 0, 0, 0));
   PetscCall(add_spring(residual));
+  PetscCall(PetscLogEventBegin(axisym_events().cells, 0, 0, 0, 0));
   PetscCall(add_cells(x, residual, admissible));
+  PetscCall(PetscLogEventEnd(axisym_events().cells, 0, 0, 0, 0));
   admissible = petsc::agree(comm_, admissible);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

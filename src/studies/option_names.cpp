@@ -33,7 +33,28 @@ std::set<std::string, std::less<>> reserved_words() {
 }
 
 // PETSc's options that are given most often, to tell what a misspelt one was meant to be.
-constexpr std::array<std::string_view, 20> petsc_options{
+constexpr std::array<std::string_view, 41> petsc_options{
+    "axisym_fieldsplit_constraint_ksp_rtol",
+    "axisym_fieldsplit_constraint_ksp_type",
+    "axisym_fieldsplit_constraint_pc_type",
+    "axisym_fieldsplit_displacement_ksp_rtol",
+    "axisym_fieldsplit_displacement_ksp_type",
+    "axisym_fieldsplit_displacement_pc_type",
+    "axisym_ksp_converged_reason",
+    "axisym_ksp_rtol",
+    "axisym_ksp_type",
+    "axisym_mat_mumps_icntl_13",
+    "axisym_mat_mumps_icntl_14",
+    "axisym_mat_no_inode",
+    "axisym_pc_factor_mat_ordering_type",
+    "axisym_pc_factor_mat_solver_type",
+    "axisym_pc_fieldsplit_schur_precondition",
+    "axisym_pc_fieldsplit_type",
+    "axisym_pc_type",
+    "axisym_snes_converged_reason",
+    "axisym_snes_max_it",
+    "axisym_snes_monitor",
+    "axisym_snes_stol",
     "log_view",
     "options_left",
     "options_view",

@@ -35,7 +35,7 @@ constexpr std::array<std::string_view, 3> solver_prefixes{"axisym_", "slice_", "
 
 bool of_solver(std::string_view name) {
   for (std::string_view prefix : solver_prefixes)
-    for (std::string_view part : {"snes_", "ksp_", "pc_", "mat_"})
+    for (std::string_view part : {"snes_", "ksp_", "pc_", "mat_", "fieldsplit_"})
       if (name.starts_with(prefix) && name.substr(prefix.size()).starts_with(part)) return true;
   return false;
 }
@@ -47,9 +47,7 @@ bool ends_a_view(std::string_view name) {
 
 // What PETSc asks for only while it solves.
 bool asked_while_solving(std::string_view name) {
-  return of_solver(name) &&
-         (ends_a_view(name) || name.find("_snes_test_jacobian") != std::string_view::npos ||
-          name.starts_with("axisym_mat_mumps_"));
+  return of_solver(name) && (ends_a_view(name) || name.find("_snes_test_jacobian") != std::string_view::npos);
 }
 
 bool takes_viewer(std::string_view name) {
@@ -89,8 +87,18 @@ void try_solvers(const model::Scene& scene, const ForeignOptions& foreign) {
   const solvers::SliceSolver slices(PETSC_COMM_WORLD, 1, scene.discretisation.slice_solver, 1);
   check_tolerances(slices.snes(), "slice_", foreign);
   if (scene.fidelity == model::Fidelity::axisym) {
+    // On as many ranks as share a mesh.
     const solvers::SegmentTask task{&scene, 0};
-    solvers::try_axisym(PETSC_COMM_SELF, task);
+    const int rank = petsc::rank(PETSC_COMM_WORLD);
+    MPI_Comm group = MPI_COMM_NULL;
+    MPI_Comm_split(PETSC_COMM_WORLD, rank / scene.axisym.ranks_per_case, rank, &group);
+    try {
+      solvers::try_axisym(group, task);
+    } catch (...) {
+      MPI_Comm_free(&group);
+      throw;
+    }
+    MPI_Comm_free(&group);
   }
   if (scene.fidelity != model::Fidelity::sliding) return;
   const solvers::SlidingSolver sliding(PETSC_COMM_WORLD, 1, 3);

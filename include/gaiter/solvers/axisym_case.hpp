@@ -23,6 +23,7 @@ class AxisymCase {
   AxisymCase(const AxisymCase&) = delete;
   AxisymCase& operator=(const AxisymCase&) = delete;
 
+  void try_solver();         // one linear solve at the start. @note Collective.
   AxisymSummary rest();      // @note Collective.
   AxisymSummary actuated();  // from the state at rest, which comes first. @note Collective.
 

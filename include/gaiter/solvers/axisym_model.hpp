@@ -21,7 +21,8 @@ namespace gaiter::solvers {
 std::vector<model::SegmentResult> solve_axisym(MPI_Comm comm, std::span<const SegmentTask> tasks,
                                                const AxisymObserver& observer = {});
 
-// Sets the solver of a task up and drops it, so that it asks for all its options. @note Collective.
+// Sets the solver of a task up and solves one linear system, so that it asks for all its options. Throws
+// base::InputError if they do not go together. @note Collective.
 void try_axisym(MPI_Comm comm, const SegmentTask& task);
 
 }  // namespace gaiter::solvers

@@ -51,8 +51,11 @@ struct AxisymSpace {
   std::vector<ContactSurface> tubes;  // one a tube block
   ContactSurface leg;
   SpaceChoice choice;
-  PetscInt pressures = 0, multipliers = 0, potentials = 0;  // over all ranks
+  PetscInt pressures = 0, multipliers = 0, potentials = 0;  // free ones, over all ranks
   std::vector<std::pair<PetscInt, double>> electrodes;  // places in the local Vec, and the potential there
+
+  // Of the tangent at a stable state: one for each unknown that the energy is largest in.
+  PetscInt negative_eigenvalues() const { return pressures + multipliers + potentials; }
 
   // @note Collective. The columns of every tube must be a multiple of the layers chosen.
   static AxisymSpace make(MPI_Comm comm, AxisymMesh mesh, const SpaceChoice& choice);

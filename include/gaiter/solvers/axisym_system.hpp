@@ -65,6 +65,7 @@ class AxisymSystem {
   const AxisymSpace<P>& space() const { return space_; }
   const AxisymMaterials& materials() const { return materials_; }
   Mat matrix() const { return matrix_.get(); }
+  int pattern() const { return pattern_; }  // counts the patterns matrix() has had: contact may slide far
   MPI_Comm comm() const { return comm_; }
 
  private:
@@ -103,7 +104,7 @@ class AxisymSystem {
   std::size_t cell_values_ = 0, first_spring_value_ = 0;  // of values_
   std::vector<PetscScalar> values_;
   double energy_ = 0, spring_ = 0, energised_ = 0;
-  int active_changes_ = 0;
+  int active_changes_ = 0, pattern_ = 0;
 };
 
 }  // namespace gaiter::solvers
