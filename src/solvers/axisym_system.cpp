@@ -215,7 +215,7 @@ PetscErrorCode AxisymSystem<P>::add_cells(Vec x, Vec residual, bool& admissible)
     for (std::size_t i = 0; i < cell.local.size(); ++i) unknowns[i] = in[cell.local[i]];
     double energy = 0;
     const bool fine =
-        block.tube ? Element::tube(cell.geometry, materials_.tube, unknowns.data(),
+        block.tube ? Element::tube(cell.geometry, materials_.tubes[cell.block], unknowns.data(),
                                    field_.empty() ? nullptr : &field_[c], energy, forces.data(), tangent)
                    : Element::leg(cell.geometry, materials_.leg[block.segment[cell.row]], unknowns.data(),
                                   energy, forces.data(), tangent);
