@@ -29,7 +29,8 @@ template <int P>
 void study(double stretch, int meshes) {
   model::Scene scene = paper::scene(stretch, 0);
   scene.leg.variant = model::ComplianceVariant::anchored;
-  const double stress = axisym::shear_modulus(scene.bandage), length = scene.leg.segments[0].mean_radius();
+  const double stress = solvers::axisym_stress_unit(scene.bandage),
+               length = scene.leg.segments[0].mean_radius();
   using axisym::ContactIntegrals;
   const std::vector<Quantity> quantities{
       {"mean [Pa]", &ContactIntegrals::mean, stress},

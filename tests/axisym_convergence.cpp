@@ -79,7 +79,7 @@ long double logarithmic_core(long double s) {
 }
 
 solvers::AxisymMaterials logarithmic_materials(const model::Scene& scene) {
-  solvers::AxisymMaterials materials = materials_of(scene);
+  solvers::AxisymMaterials materials = solvers::axisym_materials(scene, 0, 0);
   materials.leg[0].shear_modulus = log_shear;
   materials.leg[0].bulk_modulus = log_lame;
   materials.leg[0].other = logarithmic;

@@ -27,8 +27,8 @@ model::Scene leg_scene() {
 solvers::AxisymMaterials materials(const model::Scene& scene) {
   solvers::AxisymMaterials result;
   result.stress = stress_unit;
-  result.tube.ogden = {{130e3 / stress_unit, 2}};
   for (const model::Segment& segment : scene.leg.segments) {
+    result.tubes.emplace_back().ogden = {{130e3 / stress_unit, 2}};
     result.leg.push_back(physics::leg_material(scene.leg, segment));
     result.leg.back().shear_modulus /= stress_unit;
     result.leg.back().bulk_modulus /= stress_unit;

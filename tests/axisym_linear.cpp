@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "gaiter/petsc/check.hpp"
+#include "gaiter/solvers/axisym_case.hpp"
 #include "gaiter/solvers/axisym_solver.hpp"
 #include "gaiter/solvers/axisym_start.hpp"
 #include "paper_scene.hpp"
@@ -14,37 +15,26 @@ namespace {
 
 using namespace gaiter;
 
-constexpr double modulus = 37e3;  // unit of stress [Pa]
-
 class Cone : public testing::Test {
  protected:
   Cone() {
     scene_ = paper::scene(1.4, 0);
     scene_.leg.material = model::LegMaterial::neo_hookean;
-    solvers::AxisymMaterials materials;
-    materials.stress = modulus;
-    for (const auto& term : scene_.bandage.ogden)
-      materials.tube.ogden.push_back({term.mu / modulus, term.alpha});
-    materials.tube.bulk_modulus = INFINITY;
-    materials.tube.stabilisation = 1;
-    physics::LegMaterialLaw law = physics::leg_material(scene_.leg, scene_.leg.segments[0]);
-    law.shear_modulus /= modulus;
-    law.bulk_modulus /= modulus;
-    materials.leg.push_back(law);
     solvers::AxisymMesh mesh = solvers::make_axisym_mesh(scene_, 0, 0, {});
     height_ = mesh.leg().height.back();
-    auto space = solvers::AxisymSpace<2>::make(PETSC_COMM_WORLD, mesh, true, false);
+    auto space = solvers::AxisymSpace<2>::make(PETSC_COMM_WORLD, mesh, {});
     for (const auto* surface : {&space.tubes[0], &space.leg}) {
       std::vector<double> heights;
       for (const auto& node : surface->nodes) heights.push_back(node.height / height_);
       states_.push_back(solvers::slice_states(scene_, 0, heights, false));
     }
-    system_ = std::make_unique<solvers::AxisymSystem<2>>(PETSC_COMM_WORLD, std::move(space), materials);
+    system_ = std::make_unique<solvers::AxisymSystem<2>>(PETSC_COMM_WORLD, std::move(space),
+                                                         solvers::axisym_materials(scene_, 0, 0));
     petsc::check(DMCreateGlobalVector(system_->space().plex.get(), x_.out()));
     start();
   }
 
-  void start() { petsc::check(solvers::set_slice_start<2>(*system_, states_, x_.get())); }
+  void start() { petsc::check(solvers::set_start<2>(*system_, states_, x_.get())); }
 
   // The tube slid far along the leg, without a fold: its surface meets edges of the leg that were out of
   // reach.

@@ -49,7 +49,7 @@ TEST(Locking, IsAbsentAtEveryThicknessAndBulkModulus) {
   for (double wall : {0.1e-3, 1e-3, 5e-3})
     for (double bulk : {1e2, 1e4, 1e6, std::numeric_limits<double>::infinity()}) {
       model::Scene scene = cone(1.4, wall);
-      scene.bandage.bulk_modulus = bulk * shear_modulus(scene.bandage);
+      scene.bandage.bulk_modulus = bulk * solvers::axisym_stress_unit(scene.bandage);
       const ContactIntegrals coarse = solve(scene, 0), fine = solve(scene, 2);
       const double mean = change(coarse.mean, fine.mean), area = change(coarse.area_mean, fine.area_mean);
       std::printf("  %9g  %17g  %22.1e  %12.1e\n", 1e3 * wall, bulk, mean, area);
@@ -69,8 +69,8 @@ TEST(Locking, ShowsWhereIncompressibilityIsAskedForAtEveryPoint) {
   petsc::Vector last;
   double locked = 0;
   for (double stabilisation = 1; stabilisation < 2e5; stabilisation *= std::sqrt(10.0)) {
-    auto materials = materials_of(scene);
-    materials.tube.stabilisation = stabilisation;
+    auto materials = solvers::axisym_materials(scene, 0, 0);
+    materials.tubes[0].stabilisation = stabilisation;
     Problem<2> problem(scene, long_cells(0), materials);
     if (last.get())
       petsc::check(VecCopy(last.get(), problem.x.get()));

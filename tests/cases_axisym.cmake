@@ -39,3 +39,10 @@ foreach(RANKS 1 2 3)
   gaiter_add_test(axisym_linear_on_${RANKS} LABEL properties RANKS ${RANKS} TIMEOUT 60
                   COMMAND $<TARGET_FILE:axisym_linear>)
 endforeach()
+
+add_executable(axisym_leg axisym_leg.cpp session_main.cpp)
+target_link_libraries(axisym_leg PRIVATE gaiter_solvers GTest::gtest)
+foreach(RANKS 1 2)
+  gaiter_add_test(axisym_leg_on_${RANKS} LABEL cross RANKS ${RANKS} TIMEOUT 300
+                  COMMAND $<TARGET_FILE:axisym_leg>)
+endforeach()

@@ -15,6 +15,10 @@ STUDIES = {
                     "-sweep_bandage_stretch", "1.4,2.2"],
     "sliding": ["sweep", "-options_file", PAPER, "-comparison", "none", "-fidelity", "sliding",
                 "-sweep_bandage_stretch", "1.4,2.2"],
+    # Legs that are solved as a whole stay on one rank.
+    "legs": ["sweep", "-options_file", PAPER, "-comparison", "none", "-fidelity", "axisym", "-axisym_scope", "leg",
+             "-axisym_refine", "0", "-voltage", "0", "-leg_compliance_variant", "anchored",
+             "-sweep_bandage_stretch", "1.3,1.4"],
     # Thick and thin walls: the number of wall points must not depend on who shares a rank.
     "walls": ["sweep", "-options_file", PAPER, "-comparison", "none", "-sweep_bandage_thickness",
               "0.01 mm,1 mm,5 mm,9 mm"],

@@ -51,6 +51,8 @@ CASES = {
     "softer than nothing": (["solve", *SCENE, "-bandage_ogden_mu", "-1 kPa,1 Pa"], ["-bandage_ogden_mu", "shear modulus"]),
     "rigid leg of finite elements": (["solve", *SCENE, "-fidelity", "axisym", "-leg_model", "rigid"],
                                      ["-leg_model 'rigid'", "-fidelity axisym"]),
+    "leg with a step": (["solve", *SCENE, "-fidelity", "axisym", "-axisym_scope", "leg", "-leg_r4_radius", "49 mm,56 mm"],
+                        ["-leg_r4_radius", "-axisym_scope leg", "1 %", "0.04995 m", "r5"]),
     "soft in bulk": (["solve", *SCENE, "-fidelity", "axisym", "-bandage_bulk_modulus", "1 kPa"],
                      ["-bandage_bulk_modulus", "greater than"]),
     "misspelt option of the finite elements": (

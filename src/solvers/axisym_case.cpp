@@ -29,23 +29,51 @@ double axisym_stress_unit(const model::Bandage& bandage) {
   return sum;
 }
 
+AxisymMaterials axisym_materials(const model::Scene& scene, std::size_t first, std::size_t last) {
+  AxisymMaterials result;
+  const double unit = axisym_stress_unit(scene.bandage);
+  const double length = scene.leg.segments[first].mean_radius();  // as of the mesh
+  result.stress = unit;
+  for (std::size_t segment = first; segment <= last; ++segment) {
+    physics::TubeMaterial& tube = result.tubes.emplace_back();
+    const double voltage = scene.bandage.modules[segment].voltage;
+    for (const auto& term : scene.bandage.ogden) tube.ogden.push_back({term.mu / unit, term.alpha});
+    tube.bulk_modulus = scene.bandage.bulk_modulus / unit;
+    tube.stabilisation = 1;
+    tube.layers = scene.bandage.layers;
+    tube.permittivity =
+        vacuum_permittivity * scene.bandage.permittivity * voltage * voltage / (length * length * unit);
+  }
+  for (const model::Segment& segment : scene.leg.segments) {
+    physics::LegMaterialLaw law = physics::leg_material(scene.leg, segment);
+    law.shear_modulus /= unit;
+    law.bulk_modulus /= unit;
+    law.b *= unit;
+    law.d *= unit;
+    result.leg.push_back(law);
+  }
+  return result;
+}
+
 template <int P>
-AxisymCase<P>::AxisymCase(MPI_Comm comm, const model::Scene& scene, std::size_t segment, int refinements)
-    : scene_(scene), segment_(segment) {
+AxisymCase<P>::AxisymCase(MPI_Comm comm, const model::Scene& scene, std::size_t first, std::size_t last,
+                          int refinements)
+    : scene_(scene), first_(first), last_(last) {
   AxisymResolution resolution;
   resolution.refinements = refinements;
   SpaceChoice choice;
   choice.multipliers_on_tube = scene.axisym.multipliers == model::ContactSide::tube;
   choice.held = scene.contact_axial == model::ContactAxial::held;
-  if (scene.axisym.electrostatics == model::Electrostatics::field &&
-      scene.bandage.modules[segment].voltage != 0) {
+  const auto& modules = scene.bandage.modules;
+  const bool voltage = std::any_of(modules.begin() + first, modules.begin() + last + 1,
+                                   [](const model::Module& module) { return module.voltage != 0; });
+  if (scene.axisym.electrostatics == model::Electrostatics::field && voltage) {
     choice.layers = scene.bandage.layers;
     resolution.tube_columns = choice.layers * ((resolution.tube_columns + choice.layers - 1) / choice.layers);
   }
-  AxisymMesh mesh = make_axisym_mesh(scene, segment, segment, resolution);
-  const double length = mesh.length;
+  AxisymMesh mesh = make_axisym_mesh(scene, first, last, resolution);
   auto space = AxisymSpace<P>::make(comm, std::move(mesh), choice);
-  system_ = std::make_unique<AxisymSystem<P>>(comm, std::move(space), materials(length));
+  system_ = std::make_unique<AxisymSystem<P>>(comm, std::move(space), axisym_materials(scene, first, last));
   solver_ = std::make_unique<AxisymSolver<P>>(*system_);
   petsc::check(DMCreateGlobalVector(system_->space().plex.get(), x_.out()));
   petsc::check(VecDuplicate(x_.get(), kept_.out()));
@@ -53,21 +81,23 @@ AxisymCase<P>::AxisymCase(MPI_Comm comm, const model::Scene& scene, std::size_t 
 
 template <int P>
 void AxisymCase<P>::try_solver() {
-  petsc::check(set_slice_start<P>(*system_, states(false), x_.get()));
+  petsc::check(set_start<P>(*system_, slices(false), x_.get()));
   solver_->try_at(x_.get());
 }
 
 template <int P>
-AxisymSummary AxisymCase<P>::rest() {
-  petsc::check(set_slice_start<P>(*system_, states(false), x_.get()));
-  AxisymReport report = solver_->solve(x_.get());
-  int iterations = report.iterations;
+std::vector<AxisymSummary> AxisymCase<P>::rest() {
+  int iterations = 0;
+  std::vector<RadialState> start;
+  AxisymReport report;
+  if (sliding(start)) report = solve_from(start, iterations);
+  if (!good(report)) report = solve_from(slices(false), iterations);
   if (!good(report)) report = follow_spring(iterations);
   return summarise(report, iterations, false);
 }
 
 template <int P>
-AxisymSummary AxisymCase<P>::actuated() {
+std::vector<AxisymSummary> AxisymCase<P>::actuated() {
   if (scene_.axisym.electrostatics == model::Electrostatics::off) return summarise({true}, 0, false);
   int iterations = 0;
   double reached = 0, step = 1;
@@ -88,9 +118,9 @@ AxisymSummary AxisymCase<P>::actuated() {
   // A path from the state at rest that ends on the way: there the branch of stable states ends.
   report.converged = reached == 1;
   report.stable = report.converged;
-  AxisymSummary summary = summarise(report, iterations, true);
-  summary.stable_voltage = std::sqrt(reached);
-  return summary;
+  std::vector<AxisymSummary> summaries = summarise(report, iterations, true);
+  for (AxisymSummary& summary : summaries) summary.stable_voltage = std::sqrt(reached);
+  return summaries;
 }
 
 template <int P>
@@ -100,46 +130,88 @@ void AxisymCase<P>::show(bool actuated, const AxisymObserver& observer) const {
   if (petsc::rank(system_->comm()) == 0) observer(std::move(fields));
 }
 
+// The states of all blocks, segment by segment. Where two segments of the leg meet, the mean of both.
 template <int P>
-AxisymMaterials AxisymCase<P>::materials(double length) const {
-  AxisymMaterials result;
-  const double unit = axisym_stress_unit(scene_.bandage), voltage = scene_.bandage.modules[segment_].voltage;
-  result.stress = unit;
-  for (const auto& term : scene_.bandage.ogden) result.tube.ogden.push_back({term.mu / unit, term.alpha});
-  result.tube.bulk_modulus = scene_.bandage.bulk_modulus / unit;
-  result.tube.stabilisation = 1;
-  result.tube.layers = scene_.bandage.layers;
-  result.tube.permittivity =
-      vacuum_permittivity * scene_.bandage.permittivity * voltage * voltage / (length * length * unit);
-  for (const model::Segment& segment : scene_.leg.segments) {
-    physics::LegMaterialLaw law = physics::leg_material(scene_.leg, segment);
-    law.shear_modulus /= unit;
-    law.bulk_modulus /= unit;
-    law.b *= unit;
-    law.d *= unit;
-    result.leg.push_back(law);
+std::vector<RadialState> AxisymCase<P>::states(const Source& source) const {
+  const AxisymSpace<P>& space = system_->space();
+  const double length = space.mesh.length;
+  std::vector<RadialState> result;
+  RadialState leg;
+  std::size_t row = 0;
+  for (std::size_t segment = first_; segment <= last_; ++segment) {
+    const AxisymBlock& tube = space.mesh.blocks[segment - first_];
+    const double bottom = tube.height.front(), height = tube.height.back() - bottom;
+    const auto heights = [&](const ContactSurface& surface, std::size_t from, std::size_t to) {
+      std::vector<double> relative;
+      for (std::size_t i = from; i <= to; ++i)
+        relative.push_back((surface.nodes[i].height - bottom) / height);
+      return relative;
+    };
+    const ContactSurface& face = space.tubes[segment - first_];
+    result.push_back(source(segment, heights(face, 0, face.nodes.size() - 1), true));
+    for (double& current : result.back().height) current += bottom * length;
+
+    const std::vector<std::size_t>& rows = space.mesh.leg().segment;
+    const std::size_t from = P * row;
+    while (row < rows.size() && rows[row] == segment) ++row;
+    const RadialState piece = source(segment, heights(space.leg, from, P * row), false);
+    for (auto member : {&RadialState::leg_strain, &RadialState::pressure}) {
+      std::vector<double>& all = leg.*member;
+      if (!all.empty()) all.back() = 0.5 * (all.back() + (piece.*member).front());
+      all.insert(all.end(), (piece.*member).begin() + (all.empty() ? 0 : 1), (piece.*member).end());
+    }
   }
+  result.push_back(std::move(leg));
   return result;
 }
 
 template <int P>
-std::vector<RadialState> AxisymCase<P>::states(bool actuated) const {
-  const double height = scene_.leg.segments[segment_].height / system_->space().mesh.length;
-  std::vector<RadialState> result;
-  const auto add = [&](const ContactSurface& surface) {
-    std::vector<double> heights;
-    for (const SurfaceNode& node : surface.nodes) heights.push_back(node.height / height);
-    result.push_back(slice_states(scene_, segment_, heights, actuated));
-  };
-  add(system_->space().tubes[0]);
-  add(system_->space().leg);
-  return result;
+std::vector<RadialState> AxisymCase<P>::slices(bool actuated) const {
+  return states([&](std::size_t segment, std::span<const double> heights, bool) {
+    RadialState state = slice_states(scene_, segment, heights, actuated);
+    if (!actuated) open_ends(scene_, segment, state);
+    return state;
+  });
+}
+
+// At rest, segment by segment: the slices' where the sliding ones have no answer. False where none has, or
+// the tubes are held.
+template <int P>
+bool AxisymCase<P>::sliding(std::vector<RadialState>& start) const {
+  if (scene_.contact_axial == model::ContactAxial::held) return false;
+  model::Scene at_rest = scene_;
+  for (model::Module& module : at_rest.bandage.modules) module.voltage = 0;
+  std::vector<SlidingProfile> profiles;
+  bool any = false;
+  for (std::size_t segment = first_; segment <= last_; ++segment) {
+    SlidingSolution solution = solve_sliding({&at_rest, segment});
+    const bool found = model::trustworthy(solution.result.status);
+    profiles.push_back(found ? std::move(solution.rest) : SlidingProfile());
+    any = any || found;
+  }
+  if (!any) return false;
+  start = states([&](std::size_t segment, std::span<const double> heights, bool of_tube) {
+    const SlidingProfile& profile = profiles[segment - first_];
+    RadialState state = profile.height.empty() ? slice_states(scene_, segment, heights, false)
+                                               : sliding_states(scene_, segment, profile, heights, of_tube);
+    open_ends(scene_, segment, state);
+    return state;
+  });
+  return true;
+}
+
+template <int P>
+AxisymReport AxisymCase<P>::solve_from(const std::vector<RadialState>& start, int& iterations) {
+  petsc::check(set_start<P>(*system_, start, x_.get()));
+  const AxisymReport report = solver_->solve(x_.get());
+  iterations += report.iterations;
+  return report;
 }
 
 // From the tube held at its heights, where the slices are all but right, to the free one.
 template <int P>
 AxisymReport AxisymCase<P>::follow_spring(int& iterations) {
-  petsc::check(set_slice_start<P>(*system_, states(false), x_.get()));
+  petsc::check(set_start<P>(*system_, slices(false), x_.get()));
   petsc::check(VecCopy(x_.get(), kept_.get()));
   AxisymReport report;
   double spring = strongest_spring, last_spring = 0, factor = 0.25;
@@ -168,13 +240,19 @@ AxisymReport AxisymCase<P>::follow_spring(int& iterations) {
 }
 
 template <int P>
-AxisymSummary AxisymCase<P>::summarise(const AxisymReport& report, int iterations, bool energised) const {
-  AxisymSummary summary;
-  if (report.converged) summary = summarise_axisym<P>(scene_, segment_, *system_, energised);
-  summary.converged = report.converged;
-  summary.stable = report.stable;
-  summary.iterations = iterations;
-  return summary;
+std::vector<AxisymSummary> AxisymCase<P>::summarise(const AxisymReport& report, int iterations,
+                                                    bool energised) const {
+  std::vector<AxisymSummary> summaries;
+  for (std::size_t segment = first_; segment <= last_; ++segment) {
+    AxisymSummary summary;
+    if (report.converged)
+      summary = summarise_axisym<P>(scene_, segment, *system_, static_cast<int>(segment - first_), energised);
+    summary.converged = report.converged;
+    summary.stable = report.stable;
+    summary.iterations = iterations;
+    summaries.push_back(summary);
+  }
+  return summaries;
 }
 
 template class AxisymCase<2>;

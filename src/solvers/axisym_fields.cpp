@@ -87,7 +87,7 @@ PetscErrorCode describe_cells(const AxisymSystem<P>& system, Vec x, std::vector<
     const AxisymBlock& block = space.mesh.blocks[cell.block];
     for (std::size_t i = 0; i < cell.local.size(); ++i) u[i] = values[cell.local[i]];
     const auto stress =
-        block.tube ? physics::tube_stress<P>(cell.geometry, materials.tube, system.field(block),
+        block.tube ? physics::tube_stress<P>(cell.geometry, materials.tubes[cell.block], system.field(block),
                                              space.choice.layers > 0, u.data())
                    : physics::leg_stress<P>(cell.geometry, materials.leg[block.segment[cell.row]], u.data());
     *out++ = block.cell(cell.column, cell.row);

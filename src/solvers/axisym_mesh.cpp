@@ -11,13 +11,13 @@ namespace gaiter::solvers {
 
 namespace {
 
-// Lines of `count` cells on (0, 1) whose sizes shrink geometrically, by `ratio` in all, towards 1, or towards
-// both ends.
-std::vector<double> graded(int count, double ratio, bool both_ends) {
+// Lines of `count` cells on (0, 1) whose sizes shrink geometrically, by `ratio` in all, towards 0, 1, both or
+// neither.
+std::vector<double> graded(int count, double ratio, bool to_0, bool to_1) {
   const auto size = [&](int k) {
     const double place = count > 1 ? k / (count - 1.0) : 0;  // 0 first cell, 1 last
-    const double depth = both_ends ? std::fabs(2 * place - 1) : place;
-    return std::pow(ratio, -depth);
+    if (to_0 && to_1) return std::pow(ratio, -std::fabs(2 * place - 1));
+    return to_0 || to_1 ? std::pow(ratio, to_1 ? -place : place - 1) : 1.0;
   };
   std::vector<double> lines{0};
   for (int k = 0; k < count; ++k) lines.push_back(lines.back() + size(k));
@@ -94,13 +94,11 @@ AxisymMesh make_axisym_mesh(const model::Scene& scene, std::size_t first, std::s
   AxisymBlock leg;
   leg.height.push_back(0);
   leg.across =
-      refined(graded(resolution.leg_columns, resolution.skin_grading, false), resolution.refinements);
-  const std::vector<double> leg_lines =
-      refined(graded(resolution.leg_rows, resolution.end_grading, true), resolution.refinements);
+      refined(graded(resolution.leg_columns, resolution.skin_grading, false, true), resolution.refinements);
   const std::vector<double> tube_lines =
-      refined(graded(resolution.tube_rows, resolution.end_grading, true), resolution.refinements);
+      refined(graded(resolution.tube_rows, resolution.end_grading, true, true), resolution.refinements);
   const std::vector<double> wall_lines =
-      refined(graded(resolution.tube_columns, 1, false), resolution.refinements);
+      refined(graded(resolution.tube_columns, 1, false, false), resolution.refinements);
 
   for (std::size_t s = first; s <= last; ++s) {
     const model::Segment& segment = scene.leg.segments[s];
@@ -122,6 +120,10 @@ AxisymMesh make_axisym_mesh(const model::Scene& scene, std::size_t first, std::s
       return (segment.lower_radius + line * (segment.upper_radius - segment.lower_radius)) / mesh.length;
     };
     if (s == first) leg.outer.push_back(radius(0));
+    // Not towards other segments: there the edges of the tubes press singular peaks into a leg that is free
+    // to move along, and small cells would fold under them.
+    const std::vector<double> leg_lines = refined(
+        graded(resolution.leg_rows, resolution.end_grading, s == first, s == last), resolution.refinements);
     for (std::size_t k = 1; k < leg_lines.size(); ++k) {
       leg.height.push_back(bottom + height * leg_lines[k]);
       leg.outer.push_back(radius(leg_lines[k]));

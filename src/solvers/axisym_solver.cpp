@@ -165,8 +165,8 @@ PetscErrorCode AxisymSolver<P>::converged(SNES snes, PetscInt iteration, PetscRe
   else if (iteration > 0 && self.full_step_ && self.steps_.back() < self.step_tolerance_ &&
            self.system_.active_changes() == 0)
     *reason = SNES_CONVERGED_SNORM_RELATIVE;
-  PetscCall(
-      PetscInfo(snes, "step %g, contacts changed %d\n", self.steps_.empty() ? 0.0 : self.steps_.back(), self.system_.active_changes()));
+  PetscCall(PetscInfo(snes, "step %g, contacts changed %d\n", self.steps_.empty() ? 0.0 : self.steps_.back(),
+                      self.system_.active_changes()));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

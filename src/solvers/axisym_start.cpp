@@ -5,46 +5,45 @@
 #include <cmath>
 
 #include "gaiter/petsc/check.hpp"
-#include "gaiter/physics/slice_kernel.hpp"
-#include "gaiter/solvers/slice_solver.hpp"
+#include "gaiter/physics/quadrature.hpp"
 
 namespace gaiter::solvers {
 
 namespace {
 
-using physics::pack_width;
-using physics::PackState;
-using physics::SliceShape;
-
 constexpr int wall_points = 8;
 
-// Radial Cauchy stress and pressure field of an incompressible tube at reference radius R, inner radius a
-// pressed by P.
+// The incompressible thick wall at reference inner radius A, deformed inner radius a and axial stretch l,
+// pressed by P: r^2 = a^2 + (R^2 - A^2)/l. Lengths and stresses in one unit each.
 struct WallState {
-  double inner_reference, inner, pressure;  // A, a, P; lengths and stresses in one unit each
-  const std::vector<model::OgdenTerm>& ogden;
-  bool compressible = false;  // the pressure field is then the mean stress
+  double inner_reference, inner, axial_stretch, pressure;
+  const physics::TubeMaterial& material;
 
   double deformed(double R) const {
-    return std::sqrt(inner * inner + (R - inner_reference) * (R + inner_reference));
+    return std::sqrt(inner * inner + (R - inner_reference) * (R + inner_reference) / axial_stretch);
   }
 
+  // The element's pressure p, from the radial stress
+  // sigma_r(R) = -P + int (sigma_t - sigma_r) d rho / rho, d rho / rho = R dR / (l rho^2).
   double pressure_field(double R) const {
-    // sigma_r(R) = -P + int (sigma_t - sigma_r) d rho / rho, d rho / rho = R dR / rho^2.
     static const physics::Quadrature rule = physics::gauss_legendre(wall_points);
     double radial = -pressure;
     for (std::size_t g = 0; g < rule.nodes.size(); ++g) {
       const double at = inner_reference + rule.nodes[g] * (R - inner_reference), rho = deformed(at);
+      const double hoop = rho / at;
       double difference = 0;
-      for (const auto& term : ogden)
-        difference += term.mu * (std::pow(rho / at, term.alpha) - std::pow(at / rho, term.alpha));
-      radial += rule.weights[g] * (R - inner_reference) * difference * at / (rho * rho);
+      for (const auto& term : material.ogden)
+        difference +=
+            term.mu * (std::pow(hoop, term.alpha) - std::pow(1 / (hoop * axial_stretch), term.alpha));
+      radial += rule.weights[g] * (R - inner_reference) * difference * at / (axial_stretch * rho * rho);
     }
-    const double stretch = deformed(R) / R;
-    for (const auto& term : ogden) {
-      const double around = std::pow(stretch, term.alpha), across = 1 / around;
-      radial -= term.mu * across;
-      if (compressible) radial += term.mu * (around + across + 1) / 3;
+    const double hoop = deformed(R) / R, across = 1 / (hoop * axial_stretch);
+    for (const auto& term : material.ogden) {
+      const double own = std::pow(across, term.alpha);
+      radial -= term.mu * own;
+      // With a bulk modulus p is the mean stress, without it what the plain stretches leave (TubeMaterial).
+      if (std::isfinite(material.bulk_modulus))
+        radial += term.mu / 3 * (std::pow(hoop, term.alpha) + std::pow(axial_stretch, term.alpha) + own);
     }
     return radial;
   }
@@ -65,46 +64,8 @@ double interpolate(const std::vector<double>& values, int row, double place) {
 
 }  // namespace
 
-RadialState slice_states(const model::Scene& scene, std::size_t segment,
-                         std::span<const double> relative_heights, bool actuated) {
-  const model::Segment& leg = scene.leg.segments[segment];
-  const model::Module& module = scene.bandage.modules[segment];
-  const std::size_t count = relative_heights.size();
-  SliceShape shape{physics::gauss_legendre(wall_points), static_cast<int>(scene.bandage.ogden.size()),
-                   scene.bandage.layers, scene.leg.material};
-  physics::SliceSystem system(shape, count);
-  RadialState result;
-  for (std::size_t i = 0; i < count; ++i) {
-    const double radius = leg.lower_radius + relative_heights[i] * (leg.upper_radius - leg.lower_radius);
-    const physics::Wall wall = physics::reference_wall(scene.bandage, module, leg.mean_radius(), radius);
-    system.set(i, scene.leg, leg, scene.bandage, wall, radius, module.voltage);
-    result.leg_radius.push_back(radius);
-    result.tube_radius.push_back(wall.inner_radius);
-  }
-  std::vector<PackState> states(system.packs());
-  SliceSolver solver(PETSC_COMM_SELF, system.packs(), model::SliceSolver::newton, 0);
-  system.energise(false);
-  physics::Pack rigid;
-  solver.solve(system, states, [&](std::size_t k) {
-    physics::start_at_rest(system.shape(), system.pack(k), states[k], rigid);
-  });
-  if (actuated) {
-    system.energise(true);
-    solver.solve(system, states, [&](std::size_t k) { physics::start_actuated(states[k]); });
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    const PackState& state = states[i / pack_width];
-    const int place = static_cast<int>(i % pack_width);
-    result.pressure.push_back(state.pressure[place] * system.constant(i, SliceShape::pressure_scale));
-    result.leg_radius[i] *= 1 - state.strain[place];
-    if (state.pressure[place] > 0 || result.leg_radius[i] > result.tube_radius[i])
-      result.tube_radius[i] = result.leg_radius[i];
-  }
-  return result;
-}
-
 template <int P>
-PetscErrorCode set_slice_start(const AxisymSystem<P>& system, const std::vector<RadialState>& states, Vec x) {
+PetscErrorCode set_start(const AxisymSystem<P>& system, const std::vector<RadialState>& states, Vec x) {
   using Element = physics::AxisymElement<P>;
   PetscFunctionBegin;
   const AxisymSpace<P>& space = system.space();
@@ -120,20 +81,20 @@ PetscErrorCode set_slice_start(const AxisymSystem<P>& system, const std::vector<
     const AxisymBlock& block = space.mesh.blocks[cell.block];
     const RadialState& state = states[cell.block];
     const double inner_reference = block.inner[0];
+    const physics::TubeMaterial& tube = system.materials().tubes[block.tube ? cell.block : 0];
     for (int j = 0; j <= P; ++j)
       for (int i = 0; i <= P; ++i) {
         const int node = i + (P + 1) * j, place = P * cell.row + j;
         const double R = cell.geometry.position[node][0];
-        double moved = 0;
         if (block.tube) {
-          const double inner = state.tube_radius[place] / length;
-          moved = std::sqrt(inner * inner + (R - inner_reference) * (R + inner_reference)) - R;
+          const WallState wall{inner_reference, state.tube_radius[place] / length, state.axial_stretch[place],
+                               0, tube};
+          put(cell.global[2 * node], wall.deformed(R) - R);
+          put(cell.global[2 * node + 1], state.height[place] / length - cell.geometry.position[node][1]);
         } else {
-          const ContactSurface& skin = space.leg;
-          moved = R * (state.leg_radius[place] / length / skin.nodes[place].radius - 1);
+          put(cell.global[2 * node], -R * state.leg_strain[place]);
+          put(cell.global[2 * node + 1], 0);
         }
-        put(cell.global[2 * node], moved);
-        put(cell.global[2 * node + 1], 0);
       }
     if (!block.tube) continue;
     // Pressures by projection on their orthogonal polynomials.
@@ -145,9 +106,8 @@ PetscErrorCode set_slice_start(const AxisymSystem<P>& system, const std::vector<
                                (block.across[cell.column] +
                                 along_R * (block.across[cell.column + 1] - block.across[cell.column]));
       const WallState wall{inner_reference, interpolate<P>(state.tube_radius, cell.row, along_Z) / length,
-                           interpolate<P>(state.pressure, cell.row, along_Z) / stress,
-                           system.materials().tube.ogden,
-                           std::isfinite(system.materials().tube.bulk_modulus)};
+                           interpolate<P>(state.axial_stretch, cell.row, along_Z),
+                           interpolate<P>(state.pressure, cell.row, along_Z) / stress, tube};
       const double pressure = wall.pressure_field(R);
       for (int q = 0; q < Element::pressures; ++q) {
         moment[q] += cell.geometry.share[g] * pressure * cell.geometry.pressure[g][q];
@@ -176,7 +136,7 @@ PetscErrorCode set_slice_start(const AxisymSystem<P>& system, const std::vector<
 }
 
 #define GAITER_START(P) \
-  template PetscErrorCode set_slice_start<P>(const AxisymSystem<P>&, const std::vector<RadialState>&, Vec);
+  template PetscErrorCode set_start<P>(const AxisymSystem<P>&, const std::vector<RadialState>&, Vec);
 GAITER_START(2)
 GAITER_START(3)
 GAITER_START(4)

@@ -30,30 +30,53 @@ Pair at(const std::vector<double>& values, std::size_t edge, double place) {
   return {value, slope};
 }
 
-// Integral along a contact surface of integrand(edge, place, radius, height, pressure).
+// Part of a contact surface: some of its edges, and of these what lies between two current heights.
+struct Part {
+  std::size_t first_edge = 0, last_edge = 0;  // the last is not in it any more
+  double bottom = -INFINITY, top = INFINITY;
+};
+
+// The place on an edge of a height, 0 or 1 for heights beyond its ends.
+template <int P>
+double place_of(const std::vector<double>& heights, std::size_t edge, double height) {
+  if (height <= heights[P * edge]) return 0;
+  if (height >= heights[P * (edge + 1)]) return 1;
+  double low = 0, high = 1;
+  while (high - low > 1e-15) {
+    const double middle = 0.5 * (low + high);
+    (at<P>(heights, edge, middle)[0] < height ? low : high) = middle;
+  }
+  return low;
+}
+
+// Integral along part of a contact surface of integrand(edge, place, radius, height, pressure).
 template <int P, typename Integrand>
-double integrate(const typename AxisymSystem<P>::SurfaceState& surface, Integrand&& integrand) {
+double integrate(const typename AxisymSystem<P>::SurfaceState& surface, const Part& part,
+                 Integrand&& integrand) {
   static const physics::Quadrature rule = physics::gauss_legendre(P + 2);
   double total = 0;
-  for (std::size_t edge = 0; P * edge + P < surface.radius.size(); ++edge)
-    for (std::size_t g = 0; g < rule.nodes.size(); ++g) {
-      const double x = rule.nodes[g];
+  for (std::size_t edge = part.first_edge; edge < part.last_edge; ++edge) {
+    const double low = place_of<P>(surface.height, edge, part.bottom),
+                 high = place_of<P>(surface.height, edge, part.top);
+    for (std::size_t g = 0; g < rule.nodes.size() && high > low; ++g) {
+      const double x = low + rule.nodes[g] * (high - low);
       const double pressure = (1 - x) * surface.multiplier[P * edge] + x * surface.multiplier[P * (edge + 1)];
-      total += rule.weights[g] *
+      total += rule.weights[g] * (high - low) *
                integrand(edge, x, at<P>(surface.radius, edge, x), at<P>(surface.height, edge, x), pressure);
     }
+  }
   return total;
 }
 
 // Eq. (8) and the field at the inner faces of the layers, the wall thinned by its axial stretch as well.
 template <int P>
-void add_actuation(const model::Bandage& bandage, const AxisymSystem<P>& system, double height,
-                   AxisymSummary& sum) {
-  const auto& nodes = system.space().tubes[0].nodes;
+void add_actuation(const model::Bandage& bandage, const AxisymSystem<P>& system, int block, const Part& face,
+                   double height, AxisymSummary& sum) {
+  const auto& nodes = system.space().tubes[block].nodes;
   std::vector<double> reference;
   for (const SurfaceNode& node : nodes) reference.push_back(node.height);
   const double A = nodes[0].radius, wall = bandage.thickness / system.space().mesh.length;
-  const double strength = system.materials().tube.permittivity;
+  const double strength = system.materials().tubes[block].permittivity;
   const auto pressure = [&](std::size_t edge, double x, Pair r, Pair z, double) {
     const double axial = z[1] / at<P>(reference, edge, x)[1];
     double total = 0;
@@ -67,57 +90,68 @@ void add_actuation(const model::Bandage& bandage, const AxisymSystem<P>& system,
     }
     return total * z[1];
   };
-  sum.maxwell = integrate<P>(system.tubes()[0], pressure) / height;
+  sum.maxwell = integrate<P>(system.tubes()[block], face, pressure) / height;
 }
 
 }  // namespace
 
 template <int P>
 AxisymSummary summarise_axisym(const model::Scene& scene, std::size_t segment, const AxisymSystem<P>& system,
-                               bool energised) {
+                               int block, bool energised) {
   AxisymSummary sum;
   sum.converged = true;
   const AxisymSpace<P>& space = system.space();
+  const AxisymBlock &module_block = space.mesh.blocks[block], &leg_block = space.mesh.leg();
   const model::Segment& piece = scene.leg.segments[segment];
   const model::Module& module = scene.bandage.modules[segment];
-  const auto &tube = system.tubes()[0], &leg = system.leg();
+  const auto &tube = system.tubes()[block], &leg = system.leg();
   const auto& carrier = space.choice.multipliers_on_tube ? tube : leg;
-  const double height = piece.height / space.mesh.length;
-  const auto mean_radius = [](std::size_t, double, Pair r, Pair z, double) { return r[0] * z[1]; };
+  const double bottom = module_block.height.front(), top = module_block.height.back(), height = top - bottom;
+  const Part face{0, static_cast<std::size_t>(module_block.rows())};
+  const Part covered{0, carrier.radius.size() / P, bottom, top};
+  const auto [first, last] = std::ranges::equal_range(leg_block.segment, segment);
+  const Part flesh{static_cast<std::size_t>(first - leg_block.segment.begin()),
+                   static_cast<std::size_t>(last - leg_block.segment.begin())};
+  const double flesh_height = leg.height[P * flesh.last_edge] - leg.height[P * flesh.first_edge];
+  const auto radius_along = [](std::size_t, double, Pair r, Pair z, double) { return r[0] * z[1]; };
 
   sum.pressure =
-      integrate<P>(carrier, [](std::size_t, double, Pair, Pair z, double p) { return p * z[1]; }) / height;
-  const double force = integrate<P>(carrier, [](std::size_t, double, Pair r, Pair z, double p) {
+      integrate<P>(carrier, covered, [](std::size_t, double, Pair, Pair z, double p) { return p * z[1]; }) /
+      height;
+  const double force = integrate<P>(carrier, covered, [](std::size_t, double, Pair r, Pair z, double p) {
     return p * r[0] * std::hypot(r[1], z[1]);
   });
-  const double face = integrate<P>(
-      tube, [](std::size_t, double, Pair r, Pair z, double) { return r[0] * std::hypot(r[1], z[1]); });
-  sum.pressure_area = force / face;
+  const double area = integrate<P>(
+      tube, face, [](std::size_t, double, Pair r, Pair z, double) { return r[0] * std::hypot(r[1], z[1]); });
+  sum.pressure_area = force / area;
   sum.volume = integrate<P>(
-      leg, [](std::size_t, double, Pair r, Pair z, double) { return M_PI * r[0] * r[0] * z[1]; });
-  sum.radius = integrate<P>(leg, mean_radius) / height;
+      leg, flesh, [](std::size_t, double, Pair r, Pair z, double) { return M_PI * r[0] * r[0] * z[1]; });
+  sum.radius = integrate<P>(leg, flesh, radius_along) / flesh_height;
   const double reference =
       (module.length > 0 ? module.length / (2 * M_PI) : piece.mean_radius() / module.stretch) /
       space.mesh.length;
-  sum.stretch = integrate<P>(tube, mean_radius) / height / reference;
-  const auto& nodes = space.tubes[0].nodes;
+  sum.stretch = integrate<P>(tube, face, radius_along) / height / reference;
+  const auto& nodes = space.tubes[block].nodes;
   for (std::size_t i = 0; i < nodes.size(); ++i)
     sum.slip = std::max(sum.slip, std::fabs(tube.height[i] - nodes[i].height));
-  std::size_t vertices = 0, active = 0;
-  for (std::size_t i = 0; i < carrier.active.size(); i += P, ++vertices) {
+  std::size_t active = 0;
+  for (std::size_t i = 0; i < carrier.active.size(); i += P) {
+    const double place = (carrier.height[i] - bottom) / height;
+    if (place < 0 || place > 1) continue;
     active += carrier.active[i];
-    const double place = carrier.height[i] / height;
     if (carrier.active[i] && place > end_zone && place < 1 - end_zone)
       sum.highest_pressure = std::max(sum.highest_pressure, carrier.multiplier[i]);
   }
-  sum.open_somewhere = active < vertices;
   sum.open_everywhere = active == 0;
-  if (energised) add_actuation(scene.bandage, system, height, sum);
+  if (energised) add_actuation(scene.bandage, system, block, face, height, sum);
   return sum;
 }
 
-template AxisymSummary summarise_axisym<2>(const model::Scene&, std::size_t, const AxisymSystem<2>&, bool);
-template AxisymSummary summarise_axisym<3>(const model::Scene&, std::size_t, const AxisymSystem<3>&, bool);
-template AxisymSummary summarise_axisym<4>(const model::Scene&, std::size_t, const AxisymSystem<4>&, bool);
+template AxisymSummary summarise_axisym<2>(const model::Scene&, std::size_t, const AxisymSystem<2>&, int,
+                                           bool);
+template AxisymSummary summarise_axisym<3>(const model::Scene&, std::size_t, const AxisymSystem<3>&, int,
+                                           bool);
+template AxisymSummary summarise_axisym<4>(const model::Scene&, std::size_t, const AxisymSystem<4>&, int,
+                                           bool);
 
 }  // namespace gaiter::solvers

@@ -236,10 +236,10 @@ PetscErrorCode AxisymSystem<P>::add_cells(Vec x, Vec residual, bool& admissible)
       fine = Element::leg(cell.geometry, materials_.leg[block.segment[cell.row]], unknowns.data(), energy,
                           forces.data(), tangent);
     else if (space_.choice.layers)
-      fine = Element::charged_tube(cell.geometry, materials_.tube, field(block), unknowns.data(), energy,
-                                   forces.data(), tangent);
+      fine = Element::charged_tube(cell.geometry, materials_.tubes[cell.block], field(block), unknowns.data(),
+                                   energy, forces.data(), tangent);
     else
-      fine = Element::tube(cell.geometry, materials_.tube, field(block), unknowns.data(), energy,
+      fine = Element::tube(cell.geometry, materials_.tubes[cell.block], field(block), unknowns.data(), energy,
                            forces.data(), tangent);
     admissible = admissible && fine;
     energy_ += energy;

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 
 #include "gaiter/archive/agree.hpp"
@@ -69,11 +68,15 @@ std::vector<View> views_of(const Request& request) {
   if (request.axisym_view.empty()) return views;
   const std::filesystem::path path(request.axisym_view);
   const auto& segments = request.scene.leg.segments;
-  for (std::size_t s = 0; s < segments.size(); ++s)
+  const bool whole = request.scene.axisym.scope == model::AxisymScope::leg || segments.size() == 1;
+  const auto has_voltage = [](const model::Module& module) { return module.voltage != 0; };
+  for (std::size_t s = 0; s < (whole ? 1 : segments.size()); ++s)
     for (bool actuated : {false, true}) {
-      if (actuated && request.scene.bandage.modules[s].voltage == 0) continue;
+      const auto& modules = request.scene.bandage.modules;
+      if (actuated && !(whole ? std::ranges::any_of(modules, has_voltage) : has_voltage(modules[s])))
+        continue;
       const std::string name =
-          fmt::format("{}{}_{}{}", path.stem().string(), segments.size() > 1 ? "_" + segments[s].name : "",
+          fmt::format("{}{}_{}{}", path.stem().string(), whole ? "" : "_" + segments[s].name,
                       actuated ? "actuated" : "rest", path.extension().string());
       views.push_back({s, actuated, (path.parent_path() / name).string()});
     }

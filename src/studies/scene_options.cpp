@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "gaiter/base/text.hpp"
+#include "gaiter/studies/axisym_checks.hpp"
 #include "gaiter/studies/option_values.hpp"
 
 namespace gaiter::studies {
@@ -387,14 +388,7 @@ void check_scene(const model::Scene& scene) {
                     format_values(option("bandage_ogden_mu"), mu),
                     format_values(option("bandage_ogden_alpha"), alpha), 0.5 * twice_modulus));
   }
-  if (scene.fidelity != model::Fidelity::axisym) return;
-  if (scene.leg.model == model::LegModel::rigid)
-    throw InputError(
-        "-leg_model 'rigid': -fidelity axisym needs a leg that gives way, e.g. a stiff neo_hookean one");
-  if (bandage.bulk_modulus <= twice_modulus)
-    throw InputError(
-        fmt::format("-bandage_bulk_modulus '{} Pa': must be greater than {:.6g} Pa, twice the shear modulus",
-                    bandage.bulk_modulus, twice_modulus));
+  if (scene.fidelity == model::Fidelity::axisym) check_axisym(scene);
 }
 
 }  // namespace gaiter::studies

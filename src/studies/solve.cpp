@@ -37,7 +37,10 @@ Solution solve_designs(MPI_Comm comm, const model::Scene& scene, const Designs& 
   const Groups groups(comm, axisym ? scene.axisym.ranks_per_case : 1);
   const std::size_t segments = scene.leg.segments.size();
   const std::size_t rows = static_cast<std::size_t>(designs.size()) * segments;
-  const std::size_t first = rows * groups.mine / groups.count, last = rows * (groups.mine + 1) / groups.count;
+  // What is solved as a whole stays together: a row, or all rows of a leg.
+  const std::size_t whole = axisym && scene.axisym.scope == model::AxisymScope::leg ? segments : 1;
+  const std::size_t first = rows / whole * groups.mine / groups.count * whole,
+                    last = rows / whole * (groups.mine + 1) / groups.count * whole;
 
   const double start = MPI_Wtime();
   std::vector<model::Scene> scenes;

@@ -25,6 +25,7 @@ struct Discretisation {
 // or none.
 enum class Electrostatics { radial, field, off };
 enum class ContactSide { tube, leg };
+enum class AxisymScope { segment, leg };  // on one mesh: a segment, its ends held axially, or the whole leg
 
 // How the axisymmetric finite element model is solved.
 struct AxisymChoice {
@@ -32,7 +33,8 @@ struct AxisymChoice {
   ContactSide multipliers = ContactSide::tube;  // surface whose vertices carry the contact pressure
   int order = 2;                                // of the displacement: 2, 3 or 4
   int refine = 1;                               // uniform refinements of the coarsest mesh
-  int ranks_per_case = 1;                       // that share the mesh of one segment
+  AxisymScope scope = AxisymScope::segment;
+  int ranks_per_case = 1;  // that share one mesh
 };
 
 // Everything a solve needs: leg, bandage, loads (the modules' voltages) and how to solve.

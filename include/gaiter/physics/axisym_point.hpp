@@ -77,10 +77,11 @@ Jet<components + 3> charged_tube_energy_at(const typename AxisymElement<P>::Geom
   const auto jets = as_jets<N>(f);
   const auto phi_R = Jet<N>::variable(d_R, components + 1), phi_Z = Jet<N>::variable(d_Z, components + 2);
   Jet<N> stored = tube_energy(material, jets, Jet<N>::variable(pressure, components));
-  if (field.share > 0)
+  if (field.share > 0 && material.permittivity > 0)
     stored += electric_energy(field.share * material.permittivity, jets, phi_R, phi_Z);
-  else
-    stored -= (0.5 * material.permittivity) * (phi_R * phi_R + phi_Z * phi_Z);
+  else  // any factor gives the undeformed wall's potential
+    stored -=
+        (0.5 * (material.permittivity > 0 ? material.permittivity : 1)) * (phi_R * phi_R + phi_Z * phi_Z);
   return stored;
 }
 

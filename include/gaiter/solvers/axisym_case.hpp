@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-2-Clause
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "gaiter/solvers/axisym_fields.hpp"
@@ -14,30 +16,44 @@ namespace gaiter::solvers {
 // The problem's unit of stress: the elastomer's initial shear modulus [Pa].
 double axisym_stress_unit(const model::Bandage& bandage);
 
-// One segment of a scene on one mesh, and the way to its states. The scene outlives it.
+// The materials of segments first to last of a scene, in the units of their mesh.
+AxisymMaterials axisym_materials(const model::Scene& scene, std::size_t first, std::size_t last);
+
+// Neighbouring segments of a scene, one or all, on one mesh, and the way to their states: the leg as one
+// body, fixed axially at its two ends, a tube for each segment, fixed axially at either end of its own. The
+// scene outlives the case.
 template <int P>
 class AxisymCase {
  public:
-  // @note Collective.
-  AxisymCase(MPI_Comm comm, const model::Scene& scene, std::size_t segment, int refinements);
+  // Segments first to last, both included. @note Collective.
+  AxisymCase(MPI_Comm comm, const model::Scene& scene, std::size_t first, std::size_t last, int refinements);
   AxisymCase(const AxisymCase&) = delete;
   AxisymCase& operator=(const AxisymCase&) = delete;
 
-  void try_solver();         // one linear solve at the start. @note Collective.
-  AxisymSummary rest();      // @note Collective.
-  AxisymSummary actuated();  // from the state at rest, which comes first. @note Collective.
+  void try_solver();  // one linear solve at the start. @note Collective.
+  // One summary a segment. Starts from the sliding slices where nothing holds the tubes and these have an
+  // answer, else from the slices; where this fails, on the path of a spring that is let go.
+  // @note Collective.
+  std::vector<AxisymSummary> rest();
+  // From the state at rest, which comes first. @note Collective.
+  std::vector<AxisymSummary> actuated();
 
   // Hands the fields of the state last found over, on rank 0. @note Collective.
   void show(bool actuated, const AxisymObserver& observer) const;
 
  private:
-  AxisymMaterials materials(double length) const;
-  std::vector<RadialState> states(bool actuated) const;
+  // What a simpler model says of a segment at relative heights of the tube's or the leg's surface.
+  using Source = std::function<RadialState(std::size_t, std::span<const double>, bool)>;
+
+  std::vector<RadialState> states(const Source& source) const;
+  std::vector<RadialState> slices(bool actuated) const;
+  bool sliding(std::vector<RadialState>& start) const;
+  AxisymReport solve_from(const std::vector<RadialState>& start, int& iterations);
   AxisymReport follow_spring(int& iterations);
-  AxisymSummary summarise(const AxisymReport& report, int iterations, bool energised) const;
+  std::vector<AxisymSummary> summarise(const AxisymReport& report, int iterations, bool energised) const;
 
   const model::Scene& scene_;
-  std::size_t segment_;
+  std::size_t first_, last_;
   std::unique_ptr<AxisymSystem<P>> system_;
   std::unique_ptr<AxisymSolver<P>> solver_;
   petsc::Vector x_, kept_;

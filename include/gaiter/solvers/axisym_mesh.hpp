@@ -37,7 +37,7 @@ struct AxisymBlock {
 };
 
 // How fine: cells before refinement; each refinement halves them all. `grading` is the ratio of the largest
-// to the smallest cell, small at the segment's ends and at the leg's skin.
+// to the smallest cell, small at the ends of every tube, at both ends of the leg and at its skin.
 struct AxisymResolution {
   int tube_rows = 12, tube_columns = 1;
   int leg_rows = 10, leg_columns = 5;

@@ -12,11 +12,17 @@
 
 namespace gaiter::solvers {
 
-// The axisymmetric contact model of one segment after the other, each distributed over `comm`; every rank of
+// The axisymmetric contact model of one segment after the other, or with AxisymScope::leg of one leg after
+// the other, whose tasks are then all its segments, in order. Each is distributed over `comm`; every rank of
 // it gives the same tasks and gets all results. `error_estimate` compares with the mesh one refinement
-// coarser; `iterations` is the most Newton steps of rest or actuated state, steps of a continuation included.
+// coarser; `iterations` is the most Newton steps of rest or actuated state, failed starts and steps of a
+// continuation included, and the same for all segments of a leg.
+//
+// In a leg the volume of a segment is that of its material, between boundaries that move axially with the
+// leg. Where the radii of neighbouring segments differ, both are taken as their mean.
+//
 // The observer, which all ranks give or none, is called on rank 0 with the fields of the states found: of a
-// task at rest, then, if it has a voltage, actuated.
+// mesh at rest, then, if it has a voltage, actuated.
 // @note Collective.
 std::vector<model::SegmentResult> solve_axisym(MPI_Comm comm, std::span<const SegmentTask> tasks,
                                                const AxisymObserver& observer = {});

@@ -20,12 +20,15 @@ struct AxisymSummary {
   double field = 0;             // largest, times mesh.length over the voltage
   double maxwell = 0;           // P_a of Eq. (8), height average
   double highest_pressure = 0;  // away from the ends, where pressures are singular
-  bool open_somewhere = false, open_everywhere = false;  // where the tube does not touch
+  bool open_everywhere = false;  // the tube does not touch
 };
 
-// The state that the system was last evaluated at, which is converged. `energised`: under voltage.
+// One segment of the state that the system was last evaluated at, which is converged; `block`: its tube.
+// Pressures, stretch and slip are those of the tube, whose ends are fixed at the segment's heights. Volume
+// and radius are those of the leg's material that belongs to the segment: in a leg of several segments it
+// moves axially, and the volumes of all add up to the leg's. `energised`: under voltage.
 template <int P>
 AxisymSummary summarise_axisym(const model::Scene& scene, std::size_t segment, const AxisymSystem<P>& system,
-                               bool energised);
+                               int block, bool energised);
 
 }  // namespace gaiter::solvers

@@ -9,8 +9,9 @@ namespace gaiter::solvers {
 
 // What the bodies are made of, in the units of the problem: stresses over `stress`, lengths over mesh.length.
 struct AxisymMaterials {
-  double stress = 1;           // [Pa]
-  physics::TubeMaterial tube;  // permittivity: absolute x V^2 / (length^2 stress), potential in V
+  double stress = 1;  // [Pa]
+  // A tube block each. Permittivity: absolute x V^2 / (length^2 stress), potential in V.
+  std::vector<physics::TubeMaterial> tubes;
   std::vector<physics::LegMaterialLaw> leg;  // a segment of the scene each
 };
 
