@@ -24,7 +24,7 @@ std::vector<Option> make_table() {
       {.name = "axisym_electrostatics",
        .kind = Kind::choice,
        .choices = {"radial", "field", "off"},
-       .default_text = "radial",
+       .default_text = "field",
        .doc = "Electric field in the finite elements: closed form across the deformed wall, potential on "
               "the mesh, or none.",
        .set =

@@ -29,7 +29,7 @@ enum class AxisymScope { segment, leg };  // on one mesh: a segment, its ends he
 
 // How the axisymmetric finite element model is solved.
 struct AxisymChoice {
-  Electrostatics electrostatics = Electrostatics::radial;
+  Electrostatics electrostatics = Electrostatics::field;
   ContactSide multipliers = ContactSide::tube;  // surface whose vertices carry the contact pressure
   int order = 2;                                // of the displacement: 2, 3 or 4
   int refine = 1;                               // uniform refinements of the coarsest mesh
