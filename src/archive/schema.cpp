@@ -75,8 +75,8 @@ constexpr std::array table{
 };
 
 constexpr std::array status_words{"contact",   "slack",          "lifted",  "extrapolated",
-                                  "pulled_in", "no_equilibrium", "diverged"};
-static_assert(status_words.size() == static_cast<std::size_t>(model::Status::diverged) + 1);
+                                  "pulled_in", "no_equilibrium", "diverged", "invalid"};
+static_assert(status_words.size() == model::status_count);
 
 constexpr std::array fidelity_words{"rigid", "slice", "sliding", "axisym"};
 static_assert(fidelity_words.size() == static_cast<std::size_t>(model::Fidelity::axisym) + 1);
