@@ -45,7 +45,7 @@ TEST(OptionTable, SortedAndComplete) {
     EXPECT_EQ(entry.set == nullptr, entry.scope == Scope::program) << entry.name;
     EXPECT_EQ(entry.name.find("<s>") != std::string_view::npos, entry.scope == Scope::one_segment)
         << entry.name;
-    EXPECT_TRUE(!entry.sweepable || entry.count.most == 1) << entry.name;
+    EXPECT_TRUE(!entry.sweepable || entry.kind == Kind::quantity || entry.kind == Kind::count) << entry.name;
     for (const auto pattern : entry.yields_to) EXPECT_EQ(option(pattern).scope, Scope::one_segment);
     if (entry.kind == Kind::text) continue;
     EXPECT_NO_THROW(parse_values(entry, entry.name, entry.shown_example())) << entry.name;

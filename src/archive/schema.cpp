@@ -74,7 +74,7 @@ constexpr std::array table{
     Column{"fidelity", "", "model that gave the results of the segment", &Row::fidelity},
 };
 
-constexpr std::array status_words{"contact",   "slack",          "lifted",  "extrapolated",
+constexpr std::array status_words{"contact",   "slack",          "lifted",   "extrapolated",
                                   "pulled_in", "no_equilibrium", "diverged", "invalid"};
 static_assert(status_words.size() == model::status_count);
 

@@ -74,9 +74,9 @@ void SweepArchive::finish() {
     writer.write(here ? first_case(chunk) * layout.segments.size() : 0,
                  here ? std::span<const model::SegmentResult>(found->second.rows)
                       : std::span<const model::SegmentResult>());
-    writer.write_wall_times(here ? first_case(chunk) : 0,
-                            here ? std::span<const double>(found->second.wall_times)
-                                 : std::span<const double>());
+    writer.write_wall_times(
+        here ? first_case(chunk) : 0,
+        here ? std::span<const double>(found->second.wall_times) : std::span<const double>());
   }
   writer.close();
 }

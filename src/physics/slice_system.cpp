@@ -111,8 +111,7 @@ void SliceSystem::set_common(std::size_t first, std::size_t count, const LegCons
     const double field = k < bandage.layers ? voltage / layer_inner : 0;  // [V/m]
     fill(shape_.layer_row(k), (inner / layer_inner) * (inner / layer_inner));
     fill(shape_.layer_row(k) + 1, thickness * (2 * layer_inner + thickness) / (layer_inner * layer_inner));
-    fill(shape_.layer_row(k) + 2,
-         2 * vacuum_permittivity * bandage.permittivity * field * field / scale);
+    fill(shape_.layer_row(k) + 2, 2 * vacuum_permittivity * bandage.permittivity * field * field / scale);
   }
 }
 

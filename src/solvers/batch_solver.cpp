@@ -21,8 +21,8 @@ PetscErrorCode BatchSolver::create(MPI_Comm comm, PetscInt rows, const Setup& se
   const bool assembled = jacobian_.get() != nullptr;
   if (!assembled) {
     PetscCall(MatCreateShell(comm, rows, rows, PETSC_DETERMINE, PETSC_DETERMINE, this, jacobian_.out()));
-    PetscCall(MatShellSetOperation(jacobian_.get(), MATOP_MULT,
-                                   reinterpret_cast<void (*)(void)>(apply_jacobian)));
+    PetscCall(
+        MatShellSetOperation(jacobian_.get(), MATOP_MULT, reinterpret_cast<void (*)(void)>(apply_jacobian)));
   }
   PetscCall(SNESCreate(comm, snes_.out()));
   SNES snes = snes_.get();
@@ -30,7 +30,8 @@ PetscErrorCode BatchSolver::create(MPI_Comm comm, PetscInt rows, const Setup& se
   PetscCall(SNESSetFunction(snes, residual_.get(), form_function, this));
   PetscCall(SNESSetJacobian(snes, jacobian_.get(), jacobian_.get(), form_jacobian, this));
   PetscCall(SNESSetType(snes, setup.snes_type));
-  PetscCall(SNESSetTolerances(snes, PETSC_DEFAULT, setup.tolerance, PETSC_DEFAULT, setup.steps, PETSC_DEFAULT));
+  PetscCall(
+      SNESSetTolerances(snes, PETSC_DEFAULT, setup.tolerance, PETSC_DEFAULT, setup.steps, PETSC_DEFAULT));
   PetscCall(SNESSetMaxLinearSolveFailures(snes, setup.steps));
   PetscCall(SNESSetConvergenceTest(snes, converged, this, nullptr));
 

@@ -100,8 +100,8 @@ void SliceModel::take(std::span<const SegmentTask> tasks) {
     const model::Scene& scene = *tasks[t].scene;
     const model::Segment& segment = scene.leg.segments[tasks[t].segment];
     const model::Module& module = scene.bandage.modules[tasks[t].segment];
-    system_.set_segment(own.first, own.rule->nodes, scene.leg, segment, scene.bandage, module,
-                        *own.wall_rule, std::span(radii_).subspan(own.first, own.end - own.first));
+    system_.set_segment(own.first, own.rule->nodes, scene.leg, segment, scene.bandage, module, *own.wall_rule,
+                        std::span(radii_).subspan(own.first, own.end - own.first));
     const double reference =
         module.length > 0 ? module.length / (2 * M_PI) : segment.mean_radius() / module.stretch;
     for (std::size_t slice = own.first; slice < own.end; ++slice) {
@@ -182,11 +182,11 @@ std::span<const model::SegmentResult> SliceModel::solve(std::span<const SegmentT
     const Task& own = tasks_[t];
     const bool tells = own.rule->nodes.size() >= physics::fewest_for_height_error &&
                        tasks[t].scene->discretisation.slice_rule == model::SliceRule::gauss;
-    const double error = (tells ? height_error(own) : height_error_of_start(tasks[t], own, rigid)) +
-                         own.wall_error;
-    results_.push_back(
-        physics::summarise(std::span(outcomes_).subspan(own.first, own.end - own.first), *own.rule,
-                           tasks[t].scene->leg.segments[tasks[t].segment].height, error));
+    const double error =
+        (tells ? height_error(own) : height_error_of_start(tasks[t], own, rigid)) + own.wall_error;
+    results_.push_back(physics::summarise(std::span(outcomes_).subspan(own.first, own.end - own.first),
+                                          *own.rule, tasks[t].scene->leg.segments[tasks[t].segment].height,
+                                          error));
     results_.back().fidelity = rigid ? model::Fidelity::rigid : model::Fidelity::slice;
   }
   return results_;

@@ -64,10 +64,10 @@ SliceSolver::SliceSolver(MPI_Comm comm, std::size_t packs, model::SliceSolver al
 PetscErrorCode SliceSolver::create(MPI_Comm comm) {
   PetscFunctionBegin;
   PetscCall(create_matrix(comm));
-  PetscCall(BatchSolver::create(comm, static_cast<PetscInt>(2 * pack_width * packs_),
-                                {"slice_", newton_ ? SNESNEWTONLS : SNESNRICHARDSON, newton_tolerance,
-                                 newton_ ? newton_steps : fixed_point_steps, 2,
-                                 "inverse of the 2 x 2 block of each slice"}));
+  PetscCall(BatchSolver::create(
+      comm, static_cast<PetscInt>(2 * pack_width * packs_),
+      {"slice_", newton_ ? SNESNEWTONLS : SNESNRICHARDSON, newton_tolerance,
+       newton_ ? newton_steps : fixed_point_steps, 2, "inverse of the 2 x 2 block of each slice"}));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -20,7 +20,7 @@ using physics::SliceShape;
 
 namespace {
 
-constexpr double caution = 10;  // of an error estimated from starting values instead of solutions
+constexpr double caution = 10;            // of an error estimated from starting values instead of solutions
 constexpr double smallest_error = 4e-15;  // of a sum of some slices, by rounding
 constexpr int most_check_points = 128;    // over the height, of the rule that an error estimate compares with
 // f' of the scalar equation of a slice: 1 for a bandage that does not stiffen or soften with the leg's
@@ -109,8 +109,7 @@ void SliceModel::record(bool at_rest) {
     outcome.iterations = std::max(outcome.iterations, static_cast<int>(state.iterations[place]));
     if (state.open[place] > 0 || state.failed[place] > 0)
       outcome.status = std::max(outcome.status, Status::diverged);
-    if (pressure > tasks_[t].data_limit)
-      outcome.status = std::max(outcome.status, Status::extrapolated);
+    if (pressure > tasks_[t].data_limit) outcome.status = std::max(outcome.status, Status::extrapolated);
     if (at_rest) {
       outcome.pressure_rest = pressure;
       outcome.radius_rest = radius;

@@ -18,7 +18,8 @@ constexpr std::size_t segments_in_batch = 256;  // sliding
 std::size_t batch_designs(const model::Scene& scene) {
   const std::size_t segments = scene.leg.segments.size();
   if (scene.fidelity == model::Fidelity::axisym) return 1;
-  if (scene.fidelity == model::Fidelity::sliding) return std::max<std::size_t>(1, segments_in_batch / segments);
+  if (scene.fidelity == model::Fidelity::sliding)
+    return std::max<std::size_t>(1, segments_in_batch / segments);
   const std::size_t slices = segments * static_cast<std::size_t>(scene.discretisation.slice_count);
   return std::max<std::size_t>(1, slices_in_batch / slices);
 }

@@ -30,8 +30,7 @@ std::string progress_text(std::int64_t designs, std::int64_t before, std::int64_
   const double rate = seconds > 0 ? static_cast<double>(done) / seconds : 0;
   const std::int64_t left = designs - before - done;
   std::string text = fmt::format("{} of {} designs", before + done, designs);
-  if (rate > 0)
-    text += fmt::format(", {:.3g}/s, {} left", rate, duration(static_cast<double>(left) / rate));
+  if (rate > 0) text += fmt::format(", {:.3g}/s, {} left", rate, duration(static_cast<double>(left) / rate));
   if (failed > 0) text += fmt::format(", {} failed", failed);
   return text;
 }

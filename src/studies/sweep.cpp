@@ -57,7 +57,8 @@ SweepRun::SweepRun(MPI_Comm comm, const Request& request, const Designs& designs
                    archive::SweepArchive& archive)
     : comm_(comm),
       archive_(archive),
-      groups_(comm, request.scene.fidelity == model::Fidelity::axisym ? request.scene.axisym.ranks_per_case : 1),
+      groups_(comm,
+              request.scene.fidelity == model::Fidelity::axisym ? request.scene.axisym.ranks_per_case : 1),
       solver_(groups_.group, request.scene, designs) {
   for (std::size_t chunk = 0; chunk < archive.chunks(); ++chunk) {
     if (!archive.finished(chunk)) {
@@ -67,8 +68,8 @@ SweepRun::SweepRun(MPI_Comm comm, const Request& request, const Designs& designs
   }
   report_.taken_up = designs.size() - report_.missing;
   // Slices all cost about the same. The others may differ tenfold.
-  const bool even = request.scene.fidelity == model::Fidelity::slice ||
-                    request.scene.fidelity == model::Fidelity::rigid;
+  const bool even =
+      request.scene.fidelity == model::Fidelity::slice || request.scene.fidelity == model::Fidelity::rigid;
   queue_.emplace(comm, static_cast<std::int64_t>(chunks_.size()),
                  even ? WorkQueue::Order::in_turn : WorkQueue::Order::on_demand, groups_.mine, groups_.count);
   if (petsc::rank(comm) == 0 && request.progress != Progress::off)
@@ -112,8 +113,8 @@ SweepReport SweepRun::run() {
   for (std::int64_t chunk = next_chunk(); chunk >= 0; chunk = next_chunk()) {
     const auto number = static_cast<std::size_t>(chunk);
     const double before = MPI_Wtime();
-    const SolvedChunk& solved = solver_.solve(static_cast<std::int64_t>(archive_.first_case(number)),
-                                              archive_.cases_in(number));
+    const SolvedChunk& solved =
+        solver_.solve(static_cast<std::int64_t>(archive_.first_case(number)), archive_.cases_in(number));
     report_.solving += MPI_Wtime() - before;
     if (petsc::rank(groups_.group) == 0) store(number, solved);
   }
@@ -159,8 +160,12 @@ SweepReport run_sweep(MPI_Comm comm, const Request& request, const Designs& desi
 
 std::string speed_summary(MPI_Comm comm, const SweepReport& report) {
   enum Sum { designs, equilibria, solving, storing, finishing, messages, sums };
-  std::array<double, sums> mine{static_cast<double>(report.designs), report.equilibria, report.solving,
-                                report.storing, report.finishing, static_cast<double>(report.messages)};
+  std::array<double, sums> mine{static_cast<double>(report.designs),
+                                report.equilibria,
+                                report.solving,
+                                report.storing,
+                                report.finishing,
+                                static_cast<double>(report.messages)};
   std::array<double, sums> all{};
   MPI_Reduce(mine.data(), all.data(), sums, MPI_DOUBLE, MPI_SUM, 0, comm);
   const double busy = report.solving + report.storing, ranks = petsc::size(comm);
@@ -172,7 +177,8 @@ std::string speed_summary(MPI_Comm comm, const SweepReport& report) {
     text += fmt::format(", {:.3g} equilibria/s a rank", all[equilibria] / report.seconds / ranks);
   const double mean_busy = (all[solving] + all[storing]) / ranks;
   text += fmt::format(
-      "\n  busy {:.3g} to {:.3g} s, imbalance {:.3f}; archive {:.1f} % of the time; {:.2g} messages a design\n",
+      "\n  busy {:.3g} to {:.3g} s, imbalance {:.3f}; archive {:.1f} % of the time; {:.2g} messages a "
+      "design\n",
       least_busy, most_busy, mean_busy > 0 ? most_busy / mean_busy : 1.0,
       100 * (all[storing] + all[finishing]) / (ranks * report.seconds), all[messages] / all[designs]);
   return text;

@@ -40,8 +40,8 @@ class BatchSolver {
   PetscErrorCode solve_open(Totals totals, int& iterations);
   PetscErrorCode add_over_ranks(Totals& totals) const;
 
-  // What a kind of block does. Residuals (f may be null) and tangents of all blocks at x; `admissible` becomes
-  // false where one cannot be evaluated.
+  // What a kind of block does. Residuals (f may be null) and tangents of all blocks at x; `admissible`
+  // becomes false where one cannot be evaluated.
   virtual PetscErrorCode evaluate(Vec x, Vec f, bool& admissible) = 0;
   virtual PetscErrorCode assemble(Mat jacobian) = 0;  // only where it is not a shell
   virtual void multiply(const PetscScalar* in, PetscScalar* out) = 0;
@@ -56,9 +56,9 @@ class BatchSolver {
   petsc::Vector solution_, residual_;
   petsc::Matrix jacobian_;
   petsc::Snes snes_;
-  double tolerance_ = 0;       // of a block, while it is solved
-  double open_ = 0;            // blocks, over all ranks
-  bool own_inverse_ = false;   // directions come from invert() alone, so that those of closed blocks are free
+  double tolerance_ = 0;      // of a block, while it is solved
+  double open_ = 0;           // blocks, over all ranks
+  bool own_inverse_ = false;  // directions come from invert() alone, so that those of closed blocks are free
 
  private:
   static PetscErrorCode form_function(SNES snes, Vec x, Vec f, void* context);

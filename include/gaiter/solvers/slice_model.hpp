@@ -38,7 +38,7 @@ class SliceModel {
  private:
   // What is kept of a task while its batch is solved.
   struct Task {
-    std::size_t first = 0, end = 0;  // its slices
+    std::size_t first = 0, end = 0;                  // its slices
     const physics::Quadrature* rule = nullptr;       // over the height
     const physics::Quadrature* wall_rule = nullptr;  // through the wall
     double wall_error = 0, voltage = 0;

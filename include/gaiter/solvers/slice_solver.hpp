@@ -17,8 +17,8 @@ struct SliceReport {
 };
 
 // The equilibria of many slices as one SNES over a distributed Vec with blocks (strain, pressure), a slice a
-// block. Slices that have converged leave: once most of those in the packs at hand have, the rest are gathered
-// into packs of their own, so that a hard slice costs only itself.
+// block. Slices that have converged leave: once most of those in the packs at hand have, the rest are
+// gathered into packs of their own, so that a hard slice costs only itself.
 //
 // Options (prefix slice_): -slice_snes_rtol is the relative error of a slice's pressure at which it closes,
 // -slice_snes_max_it bounds the steps; -slice_mat_type shell (default: the blocks are inverted as stored) or

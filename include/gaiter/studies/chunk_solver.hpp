@@ -14,11 +14,11 @@ namespace gaiter::studies {
 
 // A run of designs, solved: what an archive keeps of it.
 struct SolvedChunk {
-  std::vector<model::SegmentResult> rows;          // design by design, segment by segment
-  std::vector<double> wall_times;                  // of each design: its share of what was solved together [s]
-  std::vector<std::vector<double>> swept_values;   // of each axis, a value a design
-  std::int64_t failed = 0;                         // designs with a row that cannot be trusted
-  double equilibria = 0;                           // of slices; 0 at the other fidelities
+  std::vector<model::SegmentResult> rows;         // design by design, segment by segment
+  std::vector<double> wall_times;                 // of each design: its share of what was solved together [s]
+  std::vector<std::vector<double>> swept_values;  // of each axis, a value a design
+  std::int64_t failed = 0;                        // designs with a row that cannot be trusted
+  double equilibria = 0;                          // of slices; 0 at the other fidelities
 };
 
 // Solves runs of designs, batch by batch: a batch of slices fits the caches and is one SNES, which is used

@@ -14,8 +14,8 @@ namespace gaiter::studies {
 
 // What the user asks for, read from the options and checked.
 struct Request {
-  model::Scene scene;  // of a sweep: its first design
-  std::string output;  // file name of the archive
+  model::Scene scene;                         // of a sweep: its first design
+  std::string output;                         // file name of the archive
   std::vector<std::string> output_variables;  // of the results, in the schema's order; empty: all
   bool dry_run = false;
   Comparison comparison = Comparison::none;
