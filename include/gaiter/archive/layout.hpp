@@ -22,6 +22,7 @@ struct Layout {
   std::size_t cases = 1;
   std::vector<std::string> segments;  // names, ankle up
   std::vector<SweptVariable> swept;
+  std::vector<std::string> columns;  // names of the results to keep, in the order of schema.hpp; empty: all
 
   std::size_t rows() const { return cases * segments.size(); }
 };
