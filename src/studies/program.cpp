@@ -6,7 +6,9 @@
 
 #include <algorithm>
 
-#include "gaiter/archive/writer.hpp"
+#include "gaiter/archive/agree.hpp"
+#include "gaiter/archive/chunk_file.hpp"
+#include "gaiter/archive/durable_file.hpp"
 #include "gaiter/base/error.hpp"
 #include "gaiter/base/version.hpp"
 #include "gaiter/studies/help.hpp"
@@ -35,31 +37,33 @@ void check_writable(const std::string& output) {
                                           : "-output " + output + ": some ranks cannot write there");
 }
 
-archive::Layout layout_of(const Request& request, const Designs& designs) {
-  archive::Layout layout{static_cast<std::size_t>(designs.size()), {}, {}};
-  for (const model::Segment& segment : request.scene.leg.segments) layout.segments.push_back(segment.name);
-  for (std::size_t axis = 0; axis < designs.axes().size(); ++axis) {
-    const SweepAxis& swept = designs.axes()[axis];
-    archive::SweptVariable variable{
-        swept.name, std::string(swept.option->unit()), std::string(swept.option->doc), {}};
-    for (std::int64_t design = 0; design < designs.size(); ++design)
-      variable.values.push_back(designs.value(axis, design));
-    layout.swept.push_back(std::move(variable));
-  }
-  return layout;
-}
-
+// All designs at once, from the first rank.
 void write_archive(const Request& request, const Designs& designs, const CommandLine& line,
                    const Solution& solution) {
+  archive::Layout layout{static_cast<std::size_t>(designs.size()), {}, {}, {}};
+  for (const model::Segment& segment : request.scene.leg.segments) layout.segments.push_back(segment.name);
+  std::vector<std::vector<double>> values;
+  for (std::size_t axis = 0; axis < designs.axes().size(); ++axis) {
+    const SweepAxis& swept = designs.axes()[axis];
+    layout.swept.push_back({swept.name, std::string(swept.option->unit()), std::string(swept.option->doc)});
+    for (std::int64_t design = 0; design < designs.size(); ++design) {
+      if (design == 0) values.emplace_back();
+      values.back().push_back(designs.value(axis, design));
+    }
+  }
   const archive::Provenance provenance =
       archive::describe_run(PETSC_COMM_WORLD, base::version, request.text, line.typed);
-  archive::Writer writer(PETSC_COMM_WORLD, request.output, layout_of(request, designs), provenance);
-  writer.write(solution.first_row, solution.rows);
+  const std::vector<model::SegmentResult> rows = gather(PETSC_COMM_WORLD, solution);
   // The designs are solved together: each took its share.
-  const std::vector<double> share(petsc::rank(PETSC_COMM_WORLD) == 0 ? designs.size() : 0,
-                                  solution.seconds / static_cast<double>(designs.size()));
-  writer.write_wall_times(0, share);
-  writer.close();
+  const std::vector<double> share(layout.cases, solution.seconds / static_cast<double>(layout.cases));
+  archive::Failure failure;
+  try {
+    if (petsc::rank(PETSC_COMM_WORLD) == 0)
+      archive::write_archive(request.output, layout, provenance, {rows, share, values});
+  } catch (const base::InternalError& error) {
+    failure.message = error.what();
+  }
+  archive::throw_if_any_failed(PETSC_COMM_WORLD, failure);
 }
 
 void print_results(const Request& request, const Designs& designs, const Solution& solution,
