@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-2-Clause
-add_executable(archive archive.cpp archive_writer.cpp)
+add_executable(archive archive.cpp archive_sweep.cpp)
 target_link_libraries(archive PRIVATE gaiter_archive GTest::gtest)
 
 # Each number of ranks works in a folder of its own and leaves the same sample.h5 there.

@@ -103,6 +103,8 @@ TEST(Scene, EveryOptionSetsItsOwnValue) {
        [](const Scene& s) { return s.leg.data_limit; }},
       {"leg_compliance_variant", "anchored", 1, [](const Scene& s) { return double(s.leg.variant); }},
       {"leg_material", "neo_hookean", 1, [](const Scene& s) { return double(s.leg.material); }},
+      {"leg_compliance_scale", "1.5", 0.015, [](const Scene& s) { return s.leg.segments[1].compliance.a; }},
+      {"leg_radius_scale", "90 %", 0.0495, [](const Scene& s) { return s.leg.segments[1].upper_radius; }},
       {"leg_model", "rigid", 1, [](const Scene& s) { return double(s.leg.model); }},
       {"leg_poisson", "0.45", 0.45, [](const Scene& s) { return s.leg.poisson_ratio; }},
       {"leg_young", "0.1 MPa", 1e5, [](const Scene& s) { return s.leg.young_modulus; }},

@@ -182,7 +182,9 @@ TEST(Sampling, WhatIsDrawnOutOfRangeIsTold) {
     const bool sound = at(designs, i)[0] >= 1e-10;
     EXPECT_EQ(fault.empty(), sound);
     refused += !sound;
-    if (!sound) EXPECT_NE(fault.find("-bandage_thickness '-"), std::string::npos) << fault;
+    if (!sound) {
+      EXPECT_NE(fault.find("-bandage_thickness '-"), std::string::npos) << fault;
+    }
   }
   EXPECT_NEAR(refused, 159, 50);
 }

@@ -8,10 +8,9 @@
 namespace gaiter::physics {
 
 double height_error(const Quadrature& gauss, std::span<const double> pressure) {
-  constexpr double caution = 10;
-  constexpr int coefficients = 4;  // the last ones tell
+  constexpr int coefficients = 3;  // the last ones tell
   const int count = static_cast<int>(gauss.nodes.size());
-  std::array<double, coefficients> last{};  // magnitudes, of the degrees count - 4 to count - 1
+  std::array<double, coefficients> last{};
   double mean = 0;
   for (int k = 0; k < count; ++k) {
     const double x = 2 * gauss.nodes[k] - 1, share = gauss.weights[k] * pressure[k];
@@ -26,11 +25,11 @@ double height_error(const Quadrature& gauss, std::span<const double> pressure) {
     }
   }
   if (!(mean > 0)) return 0;
-  // Where every other coefficient is small, as in an even profile, the larger one of two counts.
-  for (double& coefficient : last) coefficient = std::fabs(coefficient);
-  const double earlier = std::max(last[0], last[1]), later = std::max(last[2], last[3]);
-  const double fall = earlier > 0 ? std::min(1.0, std::sqrt(later / earlier)) : 0;
-  return caution * later * std::pow(fall, count + 1) / mean;
+  // The slowest fall that any of them shows, for one alone may be small by chance.
+  double fall = 0;
+  for (int place = 0; place < coefficients; ++place)
+    fall = std::max(fall, std::pow(std::fabs(last[place]) / mean, 1.0 / (count - coefficients + place)));
+  return std::min(1.0, std::pow(fall, 2 * count));
 }
 
 }  // namespace gaiter::physics

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "gaiter/petsc/session.hpp"
-#include "gaiter/physics/height_error.hpp"
 #include "gaiter/physics/slice_kernel.hpp"
 #include "gaiter/physics/wall_resolution.hpp"
 
@@ -180,10 +179,7 @@ std::span<const model::SegmentResult> SliceModel::solve(std::span<const SegmentT
   results_.clear();
   for (std::size_t t = 0; t < tasks_.size(); ++t) {
     const Task& own = tasks_[t];
-    const bool tells = own.rule->nodes.size() >= physics::fewest_for_height_error &&
-                       tasks[t].scene->discretisation.slice_rule == model::SliceRule::gauss;
-    const double error =
-        (tells ? height_error(own) : height_error_of_start(tasks[t], own, rigid)) + own.wall_error;
+    const double error = height_error(tasks[t], own, rigid) + own.wall_error;
     results_.push_back(physics::summarise(std::span(outcomes_).subspan(own.first, own.end - own.first),
                                           *own.rule, tasks[t].scene->leg.segments[tasks[t].segment].height,
                                           error));

@@ -157,27 +157,33 @@ void SliceModel::finish_actuated() {
   }
 }
 
-// Relative error of a task's height averages, from its pressures alone.
-double SliceModel::height_error(const Task& task) const {
-  double error = smallest_error;
-  std::vector<double> pressure(task.end - task.first);
-  for (bool actuated : {false, true}) {
-    for (std::size_t k = 0; k < pressure.size(); ++k) {
-      const SliceOutcome& slice = outcomes_[task.first + k];
-      pressure[k] = actuated ? slice.pressure_actuated : slice.pressure_rest;
+// Relative error of a task's height averages. From its pressures alone, where these leave no doubt.
+double SliceModel::height_error(const SegmentTask& task, const Task& own, bool rigid) {
+  const std::size_t count = own.end - own.first;
+  if (count >= physics::fewest_for_height_error &&
+      task.scene->discretisation.slice_rule == model::SliceRule::gauss) {
+    double error = smallest_error;
+    pressures_.resize(count);
+    for (bool actuated : {false, true}) {
+      for (std::size_t k = 0; k < count; ++k) {
+        const SliceOutcome& slice = outcomes_[own.first + k];
+        pressures_[k] = actuated ? slice.pressure_actuated : slice.pressure_rest;
+      }
+      error = std::max(error, physics::height_error(*own.rule, pressures_));
+      if (own.voltage == 0) break;
     }
-    error = std::max(error, physics::height_error(*task.rule, pressure));
-    if (task.voltage == 0) break;
+    if (error < physics::largest_height_error) return error;
   }
-  return error;
+  return height_error_of_start(task, own, rigid);
 }
 
-// The same where the rule is too coarse, or no Gauss rule: from the average of the starting values, which are
-// close to the pressures, by the task's rule against the one by a finer rule.
-double SliceModel::height_error_of_start(const SegmentTask& task, const Task& own, bool rigid) const {
+// From the average of the starting values, which are close to the pressures, by the task's rule against the
+// one by a finer rule.
+double SliceModel::height_error_of_start(const SegmentTask& task, const Task& own, bool rigid) {
   const model::Scene& scene = *task.scene;
   const int count = static_cast<int>(own.rule->nodes.size());
-  const physics::Quadrature fine = physics::gauss_legendre(std::min(2 * count + 4, most_check_points));
+  const physics::Quadrature& fine =
+      height_rule(model::SliceRule::gauss, std::min(2 * count + 4, most_check_points));
   std::vector<double> heights = fine.nodes;
   heights.insert(heights.end(), own.rule->nodes.begin(), own.rule->nodes.end());
   std::vector<double> radii(heights.size()), pressures(heights.size());

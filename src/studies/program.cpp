@@ -9,10 +9,11 @@
 #include <variant>
 
 #include "gaiter/archive/agree.hpp"
+#include "gaiter/archive/chunk_file.hpp"
+#include "gaiter/archive/durable_file.hpp"
 #include "gaiter/archive/reader.hpp"
 #include "gaiter/archive/schema.hpp"
 #include "gaiter/archive/status_count.hpp"
-#include "gaiter/archive/writer.hpp"
 #include "gaiter/base/error.hpp"
 #include "gaiter/base/version.hpp"
 #include "gaiter/studies/help.hpp"
@@ -128,12 +129,17 @@ int solve(const Request& request, const CommandLine& line) {
   const Solution solution = solve_scene(PETSC_COMM_WORLD, request.scene);
   archive::Layout layout{1, {}, {}, request.output_variables};
   for (const model::Segment& segment : request.scene.leg.segments) layout.segments.push_back(segment.name);
-  archive::Writer writer(PETSC_COMM_WORLD, request.output, layout, provenance_of(request, line));
-  writer.write(solution.first_row, solution.rows);
-  writer.write_wall_times(0, std::vector<double>(printing ? 1 : 0, solution.seconds));
-  writer.close();
-
+  const archive::Provenance provenance = provenance_of(request, line);
   const std::vector<model::SegmentResult> rows = gather(PETSC_COMM_WORLD, solution);
+  archive::Failure failure;
+  try {
+    if (printing)
+      archive::write_archive(request.output, layout, provenance, {rows, {&solution.seconds, 1}, {}});
+  } catch (const base::InternalError& error) {
+    failure.message = error.what();
+  }
+  archive::throw_if_any_failed(PETSC_COMM_WORLD, failure);
+
   std::array<std::int64_t, model::status_count> counts{};
   for (const model::SegmentResult& row : rows) ++counts[static_cast<std::size_t>(row.status)];
   const ExitCode code = exit_code(counts);

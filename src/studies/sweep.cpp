@@ -25,7 +25,7 @@ archive::Layout layout_of(const Request& request, const Designs& designs) {
   archive::Layout layout{static_cast<std::size_t>(designs.size()), {}, {}, request.output_variables};
   for (const model::Segment& segment : request.scene.leg.segments) layout.segments.push_back(segment.name);
   for (const SweepAxis& axis : designs.axes())
-    layout.swept.push_back({axis.name, std::string(axis.unit()), std::string(axis.option->doc), {}});
+    layout.swept.push_back({axis.name, std::string(axis.unit()), std::string(axis.option->doc)});
   return layout;
 }
 

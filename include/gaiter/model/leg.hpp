@@ -28,7 +28,7 @@ struct Segment {
   struct {
     double lower_radius = 0, upper_radius = 0;
     Compliance compliance;
-  } given;  // before the leg's scales, which Leg::scale applies; nothing else looks at it
+  } given{};  // before the leg's scales, which Leg::scale applies; nothing else looks at it
 
   double mean_radius() const { return 0.5 * (lower_radius + upper_radius); }  // [m]
 };

@@ -56,8 +56,8 @@ class SliceModel {
   void record(bool at_rest);
   void float_free(std::size_t slice);
   void finish_actuated();
-  double height_error(const Task& task) const;
-  double height_error_of_start(const SegmentTask& task, const Task& own, bool rigid) const;
+  double height_error(const SegmentTask& task, const Task& own, bool rigid);
+  double height_error_of_start(const SegmentTask& task, const Task& own, bool rigid);
   const physics::Quadrature& height_rule(model::SliceRule rule, int count);
   const physics::Quadrature& wall_rule(int points);
   template <typename Action>
@@ -79,6 +79,7 @@ class SliceModel {
   std::vector<physics::SliceOutcome> outcomes_;
   std::vector<physics::Pack> rigid_pressure_, rest_pressure_;
   std::vector<std::size_t> owner_;  // of each slice: its task
+  std::vector<double> pressures_;  // of one task
   std::vector<double> radii_;       // of the leg at each slice
   std::vector<model::SegmentResult> results_;
 };
