@@ -21,3 +21,5 @@ gaiter_add_test(archive_kills LABEL properties RANKS 1 TIMEOUT 300
                 COMMAND ${GAITER_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/archive_kills.py $<TARGET_FILE:archive_run>
                         ${MPIEXEC_EXECUTABLE})
 set_tests_properties(archive_kills PROPERTIES PROCESSORS 3)
+
+gaiter_unit_test(archive_compression LABEL unit USES archive)
