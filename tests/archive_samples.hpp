@@ -140,6 +140,7 @@ inline void store_sample(SweepArchive& archive, std::size_t chunk, std::size_t s
   const std::size_t end = first + archive.cases_in(chunk);
   archive.store(chunk, sample_rows(first * segments, end * segments), sample_times(first, end),
                 sample_swept(first, end));
+  archive.flush();
 }
 
 // A whole run, or what an earlier one has left of it: chunks to ranks in turn, from the last to the first.

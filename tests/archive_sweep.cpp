@@ -277,6 +277,24 @@ TEST(Sweep, FullDiskIsOfOneRankAloneAndLosesNothing) {
   clear("full.h5");
 }
 
+TEST(Sweep, AFullDiskShowsOnAllRanksAtTheEndAtTheLatest) {
+  const Layout layout = sample_layout(20000);
+  clear("late.h5");
+  {
+    SweepArchive archive(MPI_COMM_WORLD, "late.h5", layout, sample_provenance(), 20000);
+    std::string message;
+    {
+      const FileLimit limit(200000);
+      if (rank_in(MPI_COMM_WORLD) == size_of(MPI_COMM_WORLD) - 1) {
+        archive.store(0, sample_rows(0, layout.rows()), sample_times(0, 20000), sample_swept(0, 20000));
+      }
+      message = message_of<base::InternalError>([&] { archive.finish(); });
+    }
+    EXPECT_NE(message.find("-output late.h5: chunk 0 cannot be stored: "), std::string::npos) << message;
+  }
+  clear("late.h5");
+}
+
 TEST(Sweep, RefusesResultsThatDoNotFit) {
   const Layout layout = sample_layout(10);
   clear("fit.h5");

@@ -26,6 +26,7 @@ uLong checked(uLong check, const std::byte* bytes, std::size_t count) {
 FileOfCases::FileOfCases(const Layout& layout, const Provenance& provenance, const CaseRange& range,
                          const CaseResults& results, bool newest_format)
     : file_(newest_format) {
+  const QuietErrors quiet;
   require_complete(layout, range.count, results);
   {
     const std::vector<Id> made = fill_file(file_.get(), layout, provenance, range);

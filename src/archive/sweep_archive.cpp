@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <future>
 #include <utility>
 
 #include "gaiter/archive/agree.hpp"
@@ -38,6 +39,8 @@ struct SweepArchive::State {
   std::uint64_t sweep;
   bool complete = false;
   std::vector<char> finished;
+  std::shared_ptr<const FileOfCases> written;
+  std::future<void> writing;  // of the chunk stored last, from the bytes of `written`
 
   State(MPI_Comm comm, std::string path, Layout layout, Provenance provenance, std::size_t chunk_cases);
 
@@ -229,25 +232,50 @@ bool SweepArchive::finished(std::size_t chunk) const {
 void SweepArchive::store(std::size_t chunk, std::span<const model::SegmentResult> rows,
                          std::span<const double> wall_times,
                          std::span<const std::vector<double>> swept_values) {
-  const State& state = *state_;
+  State& state = *state_;
+  const auto told = [context = state.context(), chunk](const std::exception& error) {
+    return base::InternalError(context + ": chunk " + std::to_string(chunk) +
+                               " cannot be stored: " + error.what() + kept);
+  };
+  std::shared_ptr<const FileOfCases> file;
   try {
     if (state.complete || chunk >= chunks()) {
       throw base::InternalError("there is no such chunk to store");
     }
-    const FileOfCases file(state.layout, state.provenance, state.range(chunk),
-                           {rows, wall_times, swept_values}, true);
-    const Seal seal = seal_of(state.sweep, file.bytes());
-    const std::string path = state.folder.chunk_path(chunk);
-    write_durably(path, temporary_name(path), {file.bytes(), std::as_bytes(std::span(&seal, 1))});
+    file = std::make_shared<const FileOfCases>(state.layout, state.provenance, state.range(chunk),
+                                               CaseResults{rows, wall_times, swept_values}, true);
   } catch (const std::exception& error) {
-    throw base::InternalError(state.context() + ": chunk " + std::to_string(chunk) +
-                              " cannot be stored: " + error.what() + kept);
+    throw told(error);
+  }
+  flush();
+  // The other thread calls neither MPI nor HDF5, and its file is released by this one.
+  const Seal seal = seal_of(state.sweep, file->bytes());
+  state.written = file;
+  state.writing = std::async(
+      std::launch::async, [bytes = file->bytes(), seal, told, path = state.folder.chunk_path(chunk)] {
+        try {
+          write_durably(path, temporary_name(path), {bytes, std::as_bytes(std::span(&seal, 1))});
+        } catch (const std::exception& error) {
+          throw told(error);
+        }
+      });
+}
+
+void SweepArchive::flush() {
+  if (state_->writing.valid()) {
+    state_->writing.get();
   }
 }
 
 void SweepArchive::finish() {
   State& state = *state_;
-  MPI_Barrier(state.comm);  // until all have stored their chunks
+  Failure failure;
+  try {
+    flush();
+  } catch (const base::InternalError& error) {
+    failure.message = error.what();
+  }
+  throw_if_any_failed(state.comm, failure);
   agreed(state.comm, state.context(), [&] {
     if (!state.complete && state.first_rank()) {
       state.finish();

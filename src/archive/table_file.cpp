@@ -166,6 +166,9 @@ std::vector<Id> fill_file(hid_t file, const Layout& layout, const Provenance& pr
     if (variable.per_segment) {
       check(H5DSattach_scale(made.back().get(), segments.get(), 1), action);
     }
+    if (unfinished != nullptr) {
+      made.pop_back();  // its windows take megabytes while it is open
+    }
   }
   return made;
 }

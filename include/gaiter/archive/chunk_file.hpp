@@ -22,7 +22,6 @@ class FileOfCases {
   std::span<const std::byte> bytes() const { return bytes_; }
 
  private:
-  QuietErrors quiet_;
   MemoryFile file_;
   std::span<const std::byte> bytes_;
 };

@@ -28,7 +28,7 @@ class SweepArchive {
   // archive. `provenance.options` is what tells sweeps apart; its lines are `name: value`. @note Collective.
   SweepArchive(MPI_Comm comm, std::string path, Layout layout, Provenance provenance,
                std::size_t chunk_cases);
-  ~SweepArchive();  // not collective; an unfinished archive stays as it is, to be taken up
+  ~SweepArchive();  // waits like flush(), not collective; an unfinished archive stays, to be taken up
   SweepArchive(const SweepArchive&) = delete;
   SweepArchive& operator=(const SweepArchive&) = delete;
 
@@ -42,12 +42,16 @@ class SweepArchive {
   // Whether an earlier run stored the chunk; the same on all ranks. Calls of store() do not change it.
   bool finished(std::size_t chunk) const;
 
-  // Writes one whole chunk durably; any chunk on any rank, in any order. `rows`: cases_in(chunk) x segments,
-  // case by case; `wall_times` [s]: one a case; `swept_values`: one vector per variable of layout.swept, one
-  // value a case. Throws base::InternalError on this rank alone, naming -output and the cause; all chunks
-  // stored before stay, and the same run can be taken up later. Not collective.
+  // Takes one whole chunk; any chunk on any rank, in any order. `rows`: cases_in(chunk) x segments, case by
+  // case; `wall_times` [s]: one a case; `swept_values`: one vector per variable of layout.swept, one value a
+  // case. The values are free again on return; the disk takes its time beside the work that follows, one
+  // chunk at a time. Throws base::InternalError on this rank alone, naming -output and the cause, for this
+  // chunk or the one before; all others stay, and the same run can be taken up later. Not collective.
   void store(std::size_t chunk, std::span<const model::SegmentResult> rows,
              std::span<const double> wall_times, std::span<const std::vector<double>> swept_values);
+
+  // Waits until all that this rank has stored is safe on the disk. Throws as store() does. Not collective.
+  void flush();
 
   // Makes FILE.h5 the archive of all chunks and removes what it was made of. A kill in between loses
   // nothing: the next run does it again. Throws base::InternalError on all ranks. @note Collective.

@@ -32,8 +32,9 @@ inline constexpr std::size_t most_parts_shown = 800;
 
 // Fills a new file with dimensions, variables and attributes for a range of cases. Variables are chunked and
 // compressed and hold nothing yet but the fill value: NaN, for integers -1. Of an unfinished run they
-// are windows onto the files of its chunks. Returns the variables in the order of variables_of(); throws
-// base::InternalError. No times of objects are kept: the same results give the same file.
+// are windows onto the files of its chunks, and none is returned; otherwise all, in the order of
+// variables_of(). Throws base::InternalError. No times of objects are kept: the same results give the same
+// file.
 std::vector<Id> fill_file(hid_t file, const Layout& layout, const Provenance& provenance,
                           const CaseRange& range, const Unfinished* unfinished = nullptr);
 
