@@ -118,6 +118,9 @@ SweepReport SweepRun::run() {
     report_.solving += MPI_Wtime() - before;
     if (petsc::rank(groups_.group) == 0) store(number, solved);
   }
+  const double flushing = MPI_Wtime();
+  archive_.flush();
+  report_.storing += MPI_Wtime() - flushing;
   report_.missing -= static_cast<std::int64_t>(petsc::sum(comm_, static_cast<double>(report_.designs)));
   report_.signal = static_cast<int>(petsc::largest(comm_, queue_->stopped()));
   if (report_.missing == 0) report_.signal = 0;
