@@ -79,7 +79,7 @@ class SliceModel {
   std::vector<physics::SliceOutcome> outcomes_;
   std::vector<physics::Pack> rigid_pressure_, rest_pressure_;
   std::vector<std::size_t> owner_;  // of each slice: its task
-  std::vector<double> pressures_;  // of one task
+  std::vector<double> pressures_;   // of one task
   std::vector<double> radii_;       // of the leg at each slice
   std::vector<model::SegmentResult> results_;
 };
