@@ -25,7 +25,7 @@ cores=$(nproc)
 packages=(
   g++ cmake make pkg-config
   libopenmpi-dev openmpi-bin libhdf5-openmpi-dev libopenblas0-serial
-  libudunits2-dev libspdlog-dev libfmt-dev libboost-dev
+  zlib1g-dev libudunits2-dev libspdlog-dev libfmt-dev libboost-dev
   libgtest-dev libbenchmark-dev
   python3 python3-numpy python3-xarray python3-h5netcdf python3-h5py python3-matplotlib python3-vtk9
 )

@@ -48,81 +48,104 @@ TEST(Schema, WordsAreThoseOfTheEnumerations) {
   EXPECT_EQ(word(model::Fidelity::slice), "slice");
 }
 
-TEST(Archive, HoldsTheSameBitsOnAnyNumberOfRanks) {
+TEST(Schema, ChoosesColumnsInTheTablesOrderAndAlwaysTheStatus) {
+  const auto names = [](const std::vector<std::string>& wanted) {
+    std::vector<std::string> chosen;
+    for (const Column* column : choose_columns(wanted)) {
+      chosen.emplace_back(column->name);
+    }
+    return chosen;
+  };
+  EXPECT_EQ(names({}).size(), columns().size());
+  EXPECT_EQ(names({"volume_rest", "pressure_rest"}),
+            (std::vector<std::string>{"pressure_rest", "volume_rest", "status"}));
+  EXPECT_EQ(names({"status"}), std::vector<std::string>{"status"});
+  EXPECT_EQ(message_of<base::InputError>([&] { names({"presure_rest"}); }),
+            "'presure_rest' is no variable of an archive; did you mean 'pressure_rest'?");
+}
+
+TEST(Archive, HoldsTheSameBytesOnAnyNumberOfRanksAndInChunksTheSameValues) {
   for (const std::size_t cases : {1u, 2u, 37u, 500u}) {
     const Layout layout = sample_layout(cases);
-    std::unique_ptr<Archive> on_one;
-    for (int ranks = 1; ranks <= size_of(MPI_COMM_WORLD); ++ranks) {
-      SCOPED_TRACE(std::to_string(cases) + " cases on " + std::to_string(ranks) + " ranks");
-      const Group group(ranks);
-      if (group.comm() == MPI_COMM_NULL) {
+    for (const std::size_t chunk_cases : {1u, 7u, 100u, 1000u}) {
+      if (cases > 40 * chunk_cases) {
         continue;
       }
-      write_sample(group.comm(), "same_bits.h5", layout);
-      if (rank_in(group.comm()) == 0) {
-        const Archive archive = read_archive("same_bits.h5");
-        expect_rows(archive, sample_rows(0, layout.rows()));
-        expect_same_bits(archive.variables.at("wall_time").numbers, sample_times(0, cases), "wall_time");
-        expect_same_bits(archive.variables.at("voltage").numbers, layout.swept[1].values, "voltage");
-        if (!on_one) {
-          on_one = std::make_unique<Archive>(archive);
+      std::string on_one;
+      for (int ranks = 1; ranks <= size_of(MPI_COMM_WORLD); ++ranks) {
+        SCOPED_TRACE(std::to_string(cases) + " cases on " + std::to_string(ranks) + " ranks, " +
+                     std::to_string(chunk_cases) + " a chunk");
+        const Group group(ranks);
+        if (group.comm() == MPI_COMM_NULL) {
+          continue;
         }
-        expect_same_variables(archive, *on_one);
-        EXPECT_EQ(archive.attributes, on_one->attributes);
+        write_sample(group.comm(), "same_bytes.h5", layout, chunk_cases);
+        if (rank_in(group.comm()) == 0) {
+          const Archive archive = read_archive("same_bytes.h5");
+          expect_rows(archive, sample_rows(0, layout.rows()));
+          expect_same_bits(archive.variables.at("wall_time").numbers, sample_times(0, cases), "wall_time");
+          expect_same_bits(archive.variables.at("voltage").numbers, sample_swept(0, cases)[1], "voltage");
+          on_one = ranks == 1 ? content("same_bytes.h5") : on_one;
+          EXPECT_TRUE(content("same_bytes.h5") == on_one);
+          EXPECT_FALSE(fs::exists("same_bytes.h5.parts"));
+          fs::remove("same_bytes.h5");
+        }
+        MPI_Barrier(group.comm());
       }
     }
   }
 }
 
-// Three ranges cut at every pair of places, taken by the ranks in turn: cases are cut in the middle, ranges
-// lie within one case or are empty, and with fewer than three ranks a Writer is written to several times.
-TEST(Archive, TakesRangesCutAnywhere) {
-  const Layout layout = sample_layout(3, {"r2", "r1"});
-  const auto ranks = static_cast<std::size_t>(size_of(MPI_COMM_WORLD));
-  const auto rank = static_cast<std::size_t>(rank_in(MPI_COMM_WORLD));
-  for (std::size_t a = 0; a <= layout.rows(); ++a) {
-    for (std::size_t b = a; b <= layout.rows(); ++b) {
-      SCOPED_TRACE("cut at " + std::to_string(a) + " and " + std::to_string(b));
-      const std::size_t cuts[] = {0, a, b, layout.rows()};
-      Writer writer(MPI_COMM_WORLD, "cut_anywhere.h5", layout, sample_provenance());
-      for (std::size_t part = rank; part < 3 + rank; part += ranks) {
-        const bool empty = part >= 3;
-        const std::size_t first = empty ? 0 : cuts[part];
-        writer.write(first, sample_rows(first, empty ? 0 : cuts[part + 1]));
-      }
-      writer.close();
-      if (rank == 0) {
-        expect_rows(read_archive("cut_anywhere.h5"), sample_rows(0, layout.rows()));
-      }
-    }
+TEST(Archive, OfOneChunkIsWrittenAtOnce) {
+  const Layout layout = sample_layout(37);
+  const std::string path = "at_once_" + std::to_string(rank_in(MPI_COMM_WORLD)) + ".h5";
+  std::ofstream(path) << "results of last week";
+  write_archive(path, layout, sample_provenance(),
+                {sample_rows(0, layout.rows()), sample_times(0, 37), sample_swept(0, 37)});
+  expect_rows(read_archive(path), sample_rows(0, layout.rows()));
+  EXPECT_EQ(message_of<base::InternalError>([&] {
+              write_archive(path, layout, sample_provenance(),
+                            {sample_rows(0, layout.rows() - 1), sample_times(0, 37), sample_swept(0, 37)});
+            }),
+            "-output " + path + ": 110 rows given, 111 expected");
+  {
+    const FileLimit limit(1000);
+    EXPECT_EQ(message_of<base::InternalError>([&] {
+                write_archive(path, layout, sample_provenance(),
+                              {sample_rows(0, layout.rows()), sample_times(0, 37), sample_swept(0, 37)});
+              }),
+              "-output " + path + ": cannot write " + path + ": File too large");
   }
+  expect_rows(read_archive(path), sample_rows(0, layout.rows()));
+  for (const auto& entry : fs::directory_iterator(".")) {
+    EXPECT_FALSE(entry.path().filename().string().starts_with(path + ".")) << entry.path();
+  }
+  fs::remove(path);
 }
 
-TEST(Archive, RowsNotWrittenHoldTheFillValue) {
-  const Layout layout = sample_layout(2, {"r2", "r1"});
-  Writer writer(MPI_COMM_WORLD, "fill.h5", layout, sample_provenance());
-  const bool mine = rank_in(MPI_COMM_WORLD) == 0;
-  writer.write(1, sample_rows(1, mine ? 2 : 1));
-  writer.close();
-  if (mine) {
-    const Archive archive = read_archive("fill.h5");
-    const auto& pressure = archive.variables.at("pressure_actuated").numbers;
-    EXPECT_TRUE(std::isnan(pressure.at(0)));
-    EXPECT_EQ(pressure.at(1), 2001.25);
-    EXPECT_TRUE(std::isnan(pressure.at(2)));
-    EXPECT_EQ(archive.variables.at("status").numbers, (std::vector<double>{-1, 1, -1, -1}));
-    EXPECT_EQ(archive.variables.at("iterations").numbers, (std::vector<double>{-1, 100001, -1, -1}));
-    EXPECT_TRUE(std::isnan(archive.variables.at("wall_time").numbers.at(0)));
+TEST(Archive, KeepsOnlyTheColumnsAskedFor) {
+  Layout layout = sample_layout(20);
+  layout.columns = {"volume_rest"};
+  write_sample(MPI_COMM_WORLD, "columns.h5", layout, 8);
+  if (rank_in(MPI_COMM_WORLD) == 0) {
+    std::vector<std::string> names;
+    for (const auto& [name, variable] : read_archive("columns.h5").variables) {
+      names.push_back(name);
+    }
+    EXPECT_EQ(names, (std::vector<std::string>{"bandage_stretch", "case", "segment", "status", "voltage",
+                                               "volume_rest", "wall_time"}));
+    fs::remove("columns.h5");
   }
 }
 
 TEST(Archive, TellsDimensionsUnitsFlagsAndProvenance) {
   Provenance provenance = sample_provenance();
   provenance.options = std::string(200000, 'x');  // beyond the 64 kB of a plain HDF5 attribute
-  Writer writer(MPI_COMM_WORLD, "tells.h5", sample_layout(2), provenance);
-  writer.close();
-  if (rank_in(MPI_COMM_WORLD) == 0) {
-    const Archive archive = read_archive("tells.h5");
+  const std::string path = "tells_" + std::to_string(rank_in(MPI_COMM_WORLD)) + ".h5";
+  write_archive(path, sample_layout(2), provenance,
+                {sample_rows(0, 6), sample_times(0, 2), sample_swept(0, 2)});
+  {
+    const Archive archive = read_archive(path);
     const Variable& pressure = archive.variables.at("pressure_rest");
     EXPECT_EQ(pressure.dimensions, (std::vector<std::string>{"case", "segment"}));
     EXPECT_EQ(pressure.shape, (std::vector<std::size_t>{2, 3}));
@@ -143,6 +166,7 @@ TEST(Archive, TellsDimensionsUnitsFlagsAndProvenance) {
     EXPECT_EQ(archive.attributes.at("ranks"), "2");
     EXPECT_EQ(archive.attributes.at("command"), provenance.command);
   }
+  fs::remove(path);
 }
 
 TEST(Reader, NamesTheFileItCannotOpen) {
@@ -187,7 +211,11 @@ TEST(Hdf5, ErrorPrintingIsAsBeforeAfterwards) {
     EXPECT_EQ(printer(), nullptr);
   }
   EXPECT_EQ(printer(), before);
-  write_sample(MPI_COMM_WORLD, "printing.h5", sample_layout(1));
+  write_sample(MPI_COMM_WORLD, "printing.h5", sample_layout(1), 1);
+  MPI_Barrier(MPI_COMM_WORLD);
+  if (rank_in(MPI_COMM_WORLD) == 0) {
+    fs::remove("printing.h5");
+  }
   EXPECT_EQ(printer(), before);
 }
 
@@ -201,7 +229,10 @@ TEST(Provenance, DescribesTheRun) {
 }
 
 TEST(Sample, IsWrittenForPython) {
-  write_sample(MPI_COMM_WORLD, "sample.h5", sample_layout(5));
+  if (rank_in(MPI_COMM_WORLD) == 0) {
+    fs::remove("sample.h5");
+  }
+  write_sample(MPI_COMM_WORLD, "sample.h5", sample_layout(5), 2);
 }
 
 // On the other ranks than the first only failures are printed, with the rank.

@@ -21,7 +21,7 @@ REALS = {
     "electric_field_max": "V m-1", "error_estimate": "1",
 }
 FLAGS = {
-    "status": "contact slack lifted extrapolated pulled_in no_equilibrium diverged",
+    "status": "contact slack lifted extrapolated pulled_in no_equilibrium diverged invalid",
     "fidelity": "rigid slice sliding axisym",
 }
 PER_CASE = {

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -19,11 +18,13 @@
 
 #include <mpi.h>
 
+#include "gaiter/archive/chunk_file.hpp"
+#include "gaiter/archive/durable_file.hpp"
 #include "gaiter/archive/hdf5.hpp"
 #include "gaiter/archive/provenance.hpp"
 #include "gaiter/archive/reader.hpp"
 #include "gaiter/archive/schema.hpp"
-#include "gaiter/archive/writer.hpp"
+#include "gaiter/archive/sweep_archive.hpp"
 #include "gaiter/base/error.hpp"
 
 namespace gaiter::archive {
@@ -113,13 +114,20 @@ inline std::vector<double> sample_times(std::size_t first, std::size_t end) {
 
 inline Layout sample_layout(std::size_t cases,
                             std::vector<std::string> segments = {"r6", "r5", "mollet_été"}) {
-  SweptVariable stretch{"bandage_stretch", "1", "stretch that the bandages are laid on with", {}};
-  SweptVariable voltage{"voltage", "V", "voltage on all bandages", {}};
-  for (std::size_t i = 0; i < cases; ++i) {
-    stretch.values.push_back(1.5 + 0.125 * static_cast<double>(i));
-    voltage.values.push_back(1000 * static_cast<double>(i));
+  return {cases,
+          std::move(segments),
+          {{"bandage_stretch", "1", "stretch that the bandages are laid on with"},
+           {"voltage", "V", "voltage on all bandages"}},
+          {}};
+}
+
+inline std::vector<std::vector<double>> sample_swept(std::size_t first, std::size_t end) {
+  std::vector<std::vector<double>> values(2);
+  for (std::size_t i = first; i < end; ++i) {
+    values[0].push_back(1.5 + 0.125 * static_cast<double>(i));
+    values[1].push_back(1000 * static_cast<double>(i));
   }
-  return {cases, std::move(segments), {stretch, voltage}};
+  return values;
 }
 
 inline Provenance sample_provenance() {
@@ -127,20 +135,25 @@ inline Provenance sample_provenance() {
           2};
 }
 
-// Cuts `count` into as many ranges as there are ranks, regardless of where a case ends.
-inline std::pair<std::size_t, std::size_t> my_range(MPI_Comm comm, std::size_t count) {
-  const auto rank = static_cast<std::size_t>(rank_in(comm));
-  const auto ranks = static_cast<std::size_t>(size_of(comm));
-  return {count * rank / ranks, count * (rank + 1) / ranks};
+inline void store_sample(SweepArchive& archive, std::size_t chunk, std::size_t segments) {
+  const std::size_t first = archive.first_case(chunk);
+  const std::size_t end = first + archive.cases_in(chunk);
+  archive.store(chunk, sample_rows(first * segments, end * segments), sample_times(first, end),
+                sample_swept(first, end));
+  archive.flush();
 }
 
-inline void write_sample(MPI_Comm comm, const std::string& path, const Layout& layout) {
-  Writer writer(comm, path, layout, sample_provenance());
-  const auto [first, end] = my_range(comm, layout.rows());
-  writer.write(first, sample_rows(first, end));
-  const auto [first_case, end_case] = my_range(comm, layout.cases);
-  writer.write_wall_times(first_case, sample_times(first_case, end_case));
-  writer.close();
+// A whole run, or what an earlier one has left of it: chunks to ranks in turn, from the last to the first.
+inline void write_sample(MPI_Comm comm, const std::string& path, const Layout& layout,
+                         std::size_t chunk_cases) {
+  SweepArchive archive(comm, path, layout, sample_provenance(), chunk_cases);
+  for (std::size_t chunk = archive.chunks(); chunk-- > 0;) {
+    const bool mine = static_cast<int>(chunk) % size_of(comm) == rank_in(comm);
+    if (mine && !archive.finished(chunk)) {
+      store_sample(archive, chunk, layout.segments.size());
+    }
+  }
+  archive.finish();
 }
 
 // Bit by bit, so that NaN equals NaN and -0 does not equal 0.
@@ -218,27 +231,21 @@ inline std::string message_of(Work&& work) {
   return "";
 }
 
-// A file limit of this process, as a full disk would be; lifted again at the end.
+// A file limit of this process, as a full disk would be; lifted again at the end. Beyond it the
+// system ends the process unless it is told not to, which is left to the archive.
 class FileLimit {
  public:
   explicit FileLimit(rlim_t bytes) {
-    handler_ = std::signal(SIGXFSZ, SIG_IGN);
     getrlimit(RLIMIT_FSIZE, &before_);
     const rlimit limit{bytes, before_.rlim_max};
     setrlimit(RLIMIT_FSIZE, &limit);
   }
-  ~FileLimit() {
-    setrlimit(RLIMIT_FSIZE, &before_);
-    std::signal(SIGXFSZ, handler_);
-  }
+  ~FileLimit() { setrlimit(RLIMIT_FSIZE, &before_); }
   FileLimit(const FileLimit&) = delete;
   FileLimit& operator=(const FileLimit&) = delete;
 
  private:
   rlimit before_{};
-  void (*handler_)(int) = SIG_DFL;
 };
-
-// The columns lie one after the other in a result, without a gap that another field would fill.
 
 }  // namespace gaiter::archive

@@ -14,6 +14,8 @@ gaiter_program_test(axisym_solvers LABEL command_line)
 set_tests_properties(axisym_solvers PROPERTIES PROCESSORS 2)
 gaiter_program_test(same_archive LABEL properties)
 set_tests_properties(same_archive PROPERTIES PROCESSORS 3)
+gaiter_program_test(sweep_runs LABEL properties)
+set_tests_properties(sweep_runs PROPERTIES PROCESSORS 2)
 gaiter_program_test(readme LABEL command_line)
 gaiter_add_test(architecture LABEL architecture
                 COMMAND ${GAITER_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/architecture.py $<TARGET_FILE:gaiter>

@@ -2,3 +2,4 @@
 gaiter_unit_test(units LABEL unit USES base)
 gaiter_unit_test(options LABEL unit USES studies)
 gaiter_unit_test(designs LABEL unit USES studies)
+gaiter_unit_test(sampling LABEL unit USES studies)

@@ -102,7 +102,7 @@ class Answers(InFolder):
                     self.assertTrue(np.isnan(file[name][:][failed]).all(), name)
                     self.assertTrue(np.isfinite(file[name][:][~failed]).all(), name)
             self.assertIn("diverged: the solver did not converge", run.out)
-            self.assertIn(f"{failed.sum()} of 12 segments have no trustworthy result; list them with", run.out)
+            self.assertIn(f"{failed.sum()} of 12 segments have no trustworthy result; list ", run.out)
             self.assertIn("h5py.File('paper.h5')", run.out)
 
     def test_newton_solves_what_the_fixed_point_cannot(self):

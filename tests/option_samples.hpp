@@ -56,6 +56,7 @@ inline std::string describe(const model::Scene& scene) {
       fmt::format("{} {} {} {} {} {} {}\n", int(contact_axial), how.sliding_count, int(axisym.electrostatics),
                   int(axisym.multipliers), axisym.order, axisym.refine, axisym.ranks_per_case);
   text += fmt::format("{} {}\n", leg.shear_modulus, bandage.bulk_modulus);
+  text += fmt::format("{} {}\n", leg.radius_scale, leg.compliance_scale);
   return text;
 }
 

@@ -45,7 +45,7 @@ TEST(OptionTable, SortedAndComplete) {
     EXPECT_EQ(entry.set == nullptr, entry.scope == Scope::program) << entry.name;
     EXPECT_EQ(entry.name.find("<s>") != std::string_view::npos, entry.scope == Scope::one_segment)
         << entry.name;
-    EXPECT_TRUE(!entry.sweepable || entry.count.most == 1) << entry.name;
+    EXPECT_TRUE(!entry.sweepable || entry.kind == Kind::quantity || entry.kind == Kind::count) << entry.name;
     for (const auto pattern : entry.yields_to) EXPECT_EQ(option(pattern).scope, Scope::one_segment);
     if (entry.kind == Kind::text) continue;
     EXPECT_NO_THROW(parse_values(entry, entry.name, entry.shown_example())) << entry.name;
@@ -104,6 +104,8 @@ TEST(Scene, EveryOptionSetsItsOwnValue) {
        [](const Scene& s) { return s.leg.data_limit; }},
       {"leg_compliance_variant", "anchored", 1, [](const Scene& s) { return double(s.leg.variant); }},
       {"leg_material", "neo_hookean", 1, [](const Scene& s) { return double(s.leg.material); }},
+      {"leg_compliance_scale", "1.5", 0.015, [](const Scene& s) { return s.leg.segments[1].compliance.a; }},
+      {"leg_radius_scale", "90 %", 0.0495, [](const Scene& s) { return s.leg.segments[1].upper_radius; }},
       {"leg_model", "rigid", 1, [](const Scene& s) { return double(s.leg.model); }},
       {"leg_poisson", "0.45", 0.45, [](const Scene& s) { return s.leg.poisson_ratio; }},
       {"leg_young", "0.1 MPa", 1e5, [](const Scene& s) { return s.leg.young_modulus; }},

@@ -30,6 +30,7 @@ class SameArchive(InFolder):
     def test_on_1_2_3_ranks(self):
         for name, words in STUDIES.items():
             for ranks in (1, 2, 3):
+                (self.folder / f"on{ranks}.h5").unlink(missing_ok=True)  # a sweep does not write over another one
                 self.run_gaiter(*words, "-output", f"on{ranks}.h5", ranks=ranks)
             with h5py.File(self.folder / "on3.h5") as file:
                 self.assertEqual(file.attrs["ranks"], 3)

@@ -247,12 +247,13 @@ TEST(Slicing, TheErrorEstimateCoversTheError) {
       for (const int slices : {1, 2, 3, 4, 5, 6}) {
         const auto result = solve(model::SliceRule::gauss, slices);
         const double error = std::fabs(result.pressure_rest - exact) / exact;
-        // Taken from starting values, with a factor of ten for caution. Below 1e-13 rounding takes over.
+        // Taken from starting values, with a factor of ten for caution; below 1e-7 from an upper bound, which
+        // need not be sharp. Below 1e-13 rounding takes over.
         EXPECT_GT(result.error_estimate, error - 1e-13) << "points " << slices << " segment " << segment;
-        EXPECT_LT(result.error_estimate, 2000 * error + 1e-12)
+        EXPECT_LT(result.error_estimate, 2000 * error + (slices < 6 ? 1e-12 : 1e-7))
             << "points " << slices << " segment " << segment;
       }
-      EXPECT_LT(solve(model::SliceRule::gauss, 6).error_estimate, 1e-9);
+      EXPECT_LT(solve(model::SliceRule::gauss, 6).error_estimate, 1e-7);
     }
 }
 

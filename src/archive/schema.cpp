@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: BSD-2-Clause
 #include "gaiter/archive/schema.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
 #include <type_traits>
+
+#include "gaiter/base/error.hpp"
+#include "gaiter/base/text.hpp"
 
 namespace gaiter::archive {
 namespace {
@@ -74,9 +78,9 @@ constexpr std::array table{
     Column{"fidelity", "", "model that gave the results of the segment", &Row::fidelity},
 };
 
-constexpr std::array status_words{"contact",   "slack",          "lifted",  "extrapolated",
-                                  "pulled_in", "no_equilibrium", "diverged"};
-static_assert(status_words.size() == static_cast<std::size_t>(model::Status::diverged) + 1);
+constexpr std::array status_words{"contact",   "slack",          "lifted",   "extrapolated",
+                                  "pulled_in", "no_equilibrium", "diverged", "invalid"};
+static_assert(status_words.size() == model::status_count);
 
 constexpr std::array fidelity_words{"rigid", "slice", "sliding", "axisym"};
 static_assert(fidelity_words.size() == static_cast<std::size_t>(model::Fidelity::axisym) + 1);
@@ -100,6 +104,28 @@ std::span<const Column> columns() {
   return table;
 }
 
+std::vector<const Column*> choose_columns(std::span<const std::string> names) {
+  std::vector<std::string> known;
+  for (const Column& column : table) {
+    known.emplace_back(column.name);
+  }
+  for (const std::string& name : names) {
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
+      const std::string near = base::nearest(name, known);
+      throw base::InputError("'" + name + "' is no variable of an archive" +
+                             (near.empty() ? "" : "; did you mean '" + near + "'?"));
+    }
+  }
+  std::vector<const Column*> chosen;
+  for (const Column& column : table) {
+    if (names.empty() || column.name == "status" ||
+        std::find(names.begin(), names.end(), column.name) != names.end()) {
+      chosen.push_back(&column);
+    }
+  }
+  return chosen;
+}
+
 Stored stored_as(const Column& column) {
   return std::visit(
       [](auto member) {
@@ -118,6 +144,7 @@ Stored stored_as(const Column& column) {
 std::size_t bytes_of(Stored stored) {
   switch (stored) {
     case Stored::float64:
+    case Stored::int64:
       return 8;
     case Stored::int32:
       return 4;

@@ -5,8 +5,9 @@
 
 #include <numeric>
 
+#include "gaiter/archive/durable_file.hpp"
 #include "gaiter/archive/hdf5.hpp"
-#include "gaiter/archive/output_file.hpp"
+#include "gaiter/archive/memory_file.hpp"
 #include "gaiter/base/error.hpp"
 
 namespace gaiter::archive {
@@ -94,22 +95,11 @@ void put_grid(hid_t root, const VtkGrid& grid) {
   put_arrays(root, "CellData", grid.cell_arrays, cells);
 }
 
-// A little more than the file will take.
-std::size_t size_of_file(const VtkGrid& grid) {
-  std::size_t bytes = 100000 + 8 * (2 * grid.points.size() + 3 * grid.cells.size());
-  for (const auto& array : grid.point_arrays) bytes += 8 * array.values.size();
-  for (const auto& array : grid.cell_arrays) bytes += 4 * array.values.size();
-  return bytes;
-}
-
 }  // namespace
 
 void write_vtk(const std::string& path, const VtkGrid& grid) {
   const QuietErrors quiet;
-  OutputFile output(path);
-  output.make_room(size_of_file(grid));  // HDF5 does not survive a full disk
-  Id file = own(H5Fcreate(output.part_path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),
-                "create " + output.part_path());
+  MemoryFile file(false);
   {
     const Id root =
         own(H5Gcreate2(file.get(), "VTKHDF", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), "write a group");
@@ -118,9 +108,7 @@ void write_vtk(const std::string& path, const VtkGrid& grid) {
     put_text(file.get(), "VTKHDF", "Type", "UnstructuredGrid");
     put_grid(root.get(), grid);
   }
-  if (!file.reset()) throw base::InternalError("cannot close the file: " + last_error());
-  output.publish();
-  output.release();
+  write_durably(path, temporary_name(path), {file.close()});
 }
 
 }  // namespace gaiter::archive

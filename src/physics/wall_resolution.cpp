@@ -12,9 +12,13 @@ namespace {
 
 constexpr int most_wall_points = 128;
 
-}  // namespace
+// What the error depends on: how fast the integrand varies through the wall.
+struct Variation {
+  double rate = 0;     // of an exponential
+  double ellipse = 1;  // of convergence of Gauss
+};
 
-double wall_error(const model::Scene& scene, std::size_t segment, int points) {
+Variation variation_in(const model::Scene& scene, std::size_t segment) {
   const model::Segment& leg = scene.leg.segments[segment];
   const double widest = std::max(leg.lower_radius, leg.upper_radius);
   const Wall wall = reference_wall(scene.bandage, scene.bandage.modules[segment], leg.mean_radius(), widest);
@@ -28,18 +32,27 @@ double wall_error(const model::Scene& scene, std::size_t segment, int points) {
       0.5 * std::fabs(std::log1p(swell / (inner * inner)) - std::log1p(swell / (outer * outer)));
   double steepest = 0;
   for (const auto& term : scene.bandage.ogden) steepest = std::max(steepest, std::fabs(term.alpha));
-  const double exponential =
-      gauss_error_of_exponential(points, (steepest + 2) * stretch_span + 1e-3 * log_area);
-  // 1/lambda^2 has poles at a distance of pi / log_area from the wall: the ellipse of convergence of Gauss.
+  // 1/lambda^2 has poles at a distance of pi / log_area from the wall.
   const double pole = 2 * M_PI / log_area;
-  const double ellipse = pole + std::hypot(1.0, pole);
-  return exponential + std::pow(ellipse, -2.0 * points);
+  return {(steepest + 2) * stretch_span + 1e-3 * log_area, pole + std::hypot(1.0, pole)};
 }
 
-int wall_points_for(const model::Scene& scene, std::size_t segment, double tolerance) {
-  int points = 2;
-  while (points < most_wall_points && wall_error(scene, segment, points) > tolerance) ++points;
-  return points;
+double error_with(const Variation& variation, int points) {
+  return gauss_error_of_exponential(points, variation.rate) + std::pow(variation.ellipse, -2.0 * points);
+}
+
+}  // namespace
+
+double wall_error(const model::Scene& scene, std::size_t segment, int points) {
+  return error_with(variation_in(scene, segment), points);
+}
+
+WallChoice wall_points_for(const model::Scene& scene, std::size_t segment, double tolerance) {
+  const Variation variation = variation_in(scene, segment);
+  WallChoice choice{2, error_with(variation, 2)};
+  while (choice.points < most_wall_points && choice.error > tolerance)
+    choice.error = error_with(variation, ++choice.points);
+  return choice;
 }
 
 }  // namespace gaiter::physics

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-2-Clause
 #include "gaiter/solvers/slice_solver.hpp"
 
-#include <petscdmshell.h>
-
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "gaiter/petsc/check.hpp"
 #include "gaiter/physics/slice_kernel.hpp"
@@ -19,6 +19,7 @@ using physics::PackState;
 constexpr double newton_tolerance = 1e-12;
 constexpr int newton_steps = 80;
 constexpr int fixed_point_steps = 2000;
+constexpr double sparse = 0.5;  // part of the packs' slices that are open, below which these are gathered
 
 // A pack's part of a Vec: (strain, pressure) of each slice in turn.
 void read_pairs(const PetscScalar* pairs, Pack& first, Pack& second) {
@@ -41,63 +42,39 @@ double count_open(const PackState& state) {
   return open;
 }
 
+// A state is an array of packs, one a quantity.
+constexpr std::size_t state_rows = sizeof(PackState) / sizeof(Pack);
+
+void copy_slice(const PackState& from, int i, PackState& to, int j) {
+  const Pack* source = reinterpret_cast<const Pack*>(&from);
+  Pack* target = reinterpret_cast<Pack*>(&to);
+  for (std::size_t row = 0; row < state_rows; ++row) target[row][j] = source[row][i];
+}
+
 }  // namespace
 
 SliceSolver::SliceSolver(MPI_Comm comm, std::size_t packs, model::SliceSolver algorithm,
                          double fixed_point_tolerance)
-    : newton_(algorithm == model::SliceSolver::newton), fixed_point_tolerance_(fixed_point_tolerance) {
-  petsc::check(create(comm, packs));
+    : packs_(packs),
+      newton_(algorithm == model::SliceSolver::newton),
+      fixed_point_tolerance_(fixed_point_tolerance) {
+  petsc::check(create(comm));
 }
 
-PetscErrorCode SliceSolver::create(MPI_Comm comm, std::size_t packs) {
+PetscErrorCode SliceSolver::create(MPI_Comm comm) {
   PetscFunctionBegin;
-  const PetscInt rows = static_cast<PetscInt>(2 * pack_width * packs);
-  PetscCall(VecCreate(comm, solution_.out()));
-  PetscCall(VecSetSizes(solution_.get(), rows, PETSC_DETERMINE));
-  PetscCall(VecSetBlockSize(solution_.get(), 2));
-  PetscCall(VecSetType(solution_.get(), VECSTANDARD));
-  PetscCall(VecSet(solution_.get(), 0));
-  PetscCall(VecDuplicate(solution_.get(), residual_.out()));
-
-  PetscCall(SNESCreate(comm, snes_.out()));
-  SNES snes = snes_.get();
-  PetscCall(SNESSetOptionsPrefix(snes, "slice_"));
-  PetscCall(SNESSetFunction(snes, residual_.get(), form_function, this));
-  PetscCall(create_matrix(comm, rows));
-  PetscCall(SNESSetJacobian(snes, jacobian_.get(), jacobian_.get(), form_jacobian, this));
-  PetscCall(SNESSetType(snes, newton_ ? SNESNEWTONLS : SNESNRICHARDSON));
-  PetscCall(SNESSetTolerances(snes, PETSC_DEFAULT, newton_tolerance, PETSC_DEFAULT,
-                              newton_ ? newton_steps : fixed_point_steps, PETSC_DEFAULT));
-  PetscCall(SNESSetMaxLinearSolveFailures(snes, newton_steps));
-  PetscCall(SNESSetConvergenceTest(snes, converged, this, nullptr));
-
-  SNESLineSearch search = nullptr;
-  PetscCall(SNESGetLineSearch(snes, &search));
-  PetscCall(SNESLineSearchSetType(search, SNESLINESEARCHSHELL));
-  PetscCall(SNESLineSearchShellSetUserFunc(search, advance, this));
-
-  KSP ksp = nullptr;
-  PC pc = nullptr;
-  PetscCall(SNESGetKSP(snes, &ksp));
-  PetscCall(KSPSetType(ksp, KSPPREONLY));
-  PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(PCSetType(pc, assembled_ ? PCPBJACOBI : PCSHELL));
-  if (!assembled_) {
-    PetscCall(PCShellSetContext(pc, this));
-    PetscCall(PCShellSetApply(pc, invert));
-    PetscCall(PCShellSetName(pc, "inverse of the 2 x 2 block of each slice"));
-  }
-  PetscCall(SNESSetFromOptions(snes));
-  // The trust region asks the SNES's shell DM for its work vectors before there is a solution to copy.
-  DM shell = nullptr;
-  PetscCall(SNESGetDM(snes, &shell));
-  PetscCall(DMShellSetGlobalVector(shell, solution_.get()));
-  PetscCall(SNESSetUp(snes));
+  PetscCall(create_matrix(comm));
+  PetscCall(BatchSolver::create(
+      comm, static_cast<PetscInt>(2 * pack_width * packs_),
+      {"slice_", newton_ ? SNESNEWTONLS : SNESNRICHARDSON, newton_tolerance,
+       newton_ ? newton_steps : fixed_point_steps, 2, "inverse of the 2 x 2 block of each slice"}));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SliceSolver::create_matrix(MPI_Comm comm, PetscInt rows) {
+// A matrix with entries, where the options ask for one.
+PetscErrorCode SliceSolver::create_matrix(MPI_Comm comm) {
   PetscFunctionBegin;
+  const PetscInt rows = static_cast<PetscInt>(2 * pack_width * packs_);
   // Differences of the residual need entries to go to.
   PetscBool by_differences = PETSC_FALSE;
   PetscCall(PetscOptionsGetBool(nullptr, "slice_", "-snes_fd", &by_differences, nullptr));
@@ -106,22 +83,17 @@ PetscErrorCode SliceSolver::create_matrix(MPI_Comm comm, PetscInt rows) {
   PetscCall(PetscOptionsGetString(nullptr, "slice_", "-mat_type", type, sizeof type, nullptr));
   PetscBool shell = PETSC_FALSE;
   PetscCall(PetscStrcmp(type, MATSHELL, &shell));
-  assembled_ = !shell;
-  if (assembled_) {
-    PetscCall(MatCreate(comm, jacobian_.out()));
-    PetscCall(MatSetOptionsPrefix(jacobian_.get(), "slice_"));
-    PetscCall(MatSetSizes(jacobian_.get(), rows, rows, PETSC_DETERMINE, PETSC_DETERMINE));
-    PetscCall(MatSetBlockSize(jacobian_.get(), 2));
-    PetscCall(MatSetFromOptions(jacobian_.get()));
-    PetscCall(MatXAIJSetPreallocation(jacobian_.get(), 2, nullptr, nullptr, nullptr, nullptr));
-    PetscCall(MatSeqBAIJSetPreallocation(jacobian_.get(), 2, 1, nullptr));
-    PetscCall(MatMPIBAIJSetPreallocation(jacobian_.get(), 2, 1, nullptr, 0, nullptr));
-    PetscCall(MatSeqAIJSetPreallocation(jacobian_.get(), 2, nullptr));
-    PetscCall(MatMPIAIJSetPreallocation(jacobian_.get(), 2, nullptr, 0, nullptr));
-  } else {
-    PetscCall(MatCreateShell(comm, rows, rows, PETSC_DETERMINE, PETSC_DETERMINE, this, jacobian_.out()));
-    PetscCall(MatShellSetOperation(jacobian_.get(), MATOP_MULT, reinterpret_cast<void (*)(void)>(multiply)));
-  }
+  if (shell) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatCreate(comm, jacobian_.out()));
+  PetscCall(MatSetOptionsPrefix(jacobian_.get(), "slice_"));
+  PetscCall(MatSetSizes(jacobian_.get(), rows, rows, PETSC_DETERMINE, PETSC_DETERMINE));
+  PetscCall(MatSetBlockSize(jacobian_.get(), 2));
+  PetscCall(MatSetFromOptions(jacobian_.get()));
+  PetscCall(MatXAIJSetPreallocation(jacobian_.get(), 2, nullptr, nullptr, nullptr, nullptr));
+  PetscCall(MatSeqBAIJSetPreallocation(jacobian_.get(), 2, 1, nullptr));
+  PetscCall(MatMPIBAIJSetPreallocation(jacobian_.get(), 2, 1, nullptr, 0, nullptr));
+  PetscCall(MatSeqAIJSetPreallocation(jacobian_.get(), 2, nullptr));
+  PetscCall(MatMPIAIJSetPreallocation(jacobian_.get(), 2, nullptr, 0, nullptr));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -140,46 +112,37 @@ PetscErrorCode SliceSolver::run(const Start& start, SliceReport& report) {
   PetscScalar *iterate = nullptr, *residual = nullptr;
   PetscCall(VecGetArrayWrite(solution_.get(), &iterate));
   PetscCall(VecGetArrayWrite(residual_.get(), &residual));
+  Totals totals;
+  work_.clear();
   for (std::size_t k = 0; k < states_->size(); ++k) {
     PackState& state = (*states_)[k];
     start(k);
-    physics::evaluate_residual(system_->shape(), system_->pack(k), state);
-    write_pairs(state.strain, state.pressure, iterate + 2 * pack_width * k);
-    write_pairs(state.strain_residual, state.pressure_residual, residual + 2 * pack_width * k);
+    const std::size_t place = 2 * pack_width * k;
+    const double open = count_open(state);
+    if (open > 0) {
+      work_.push_back({system_->pack(k), &state, pack_width * k, nullptr, pack_width});
+      physics::evaluate_residual(system_->shape(), system_->pack(k), state);
+      write_pairs(state.strain_residual, state.pressure_residual, residual + place);
+    } else {
+      std::fill_n(residual + place, 2 * pack_width, 0.0);
+    }
+    write_pairs(state.strain, state.pressure, iterate + place);
+    totals.open += open;
   }
   PetscInt size = 0;
   PetscCall(VecGetLocalSize(solution_.get(), &size));
   for (PetscInt i = 2 * pack_width * states_->size(); i < size; ++i) iterate[i] = residual[i] = 0;
   PetscCall(VecRestoreArrayWrite(residual_.get(), &residual));
   PetscCall(VecRestoreArrayWrite(solution_.get(), &iterate));
-  current_ = true;
-  blockwise_ = false;
-  PetscCall(SNESGetTolerances(snes_.get(), nullptr, &tolerance_, nullptr, nullptr, nullptr));
-  PetscCall(SNESSetInitialFunction(snes_.get(), residual_.get()));
-  PetscCall(SNESSolve(snes_.get(), nullptr, solution_.get()));
-
-  // Our own line search leaves the solution in the states; others leave it in the Vec alone.
-  const PetscScalar* result = nullptr;
-  PetscCall(VecGetArrayRead(solution_.get(), &result));
-  for (std::size_t k = 0; !blockwise_ && k < states_->size(); ++k)
-    read_pairs(result + 2 * pack_width * k, (*states_)[k].strain, (*states_)[k].pressure);
-  PetscCall(VecRestoreArrayRead(solution_.get(), &result));
-  PetscInt iterations = 0;
-  PetscCall(SNESGetIterationNumber(snes_.get(), &iterations));
-  report = {static_cast<int>(iterations), open_};
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode SliceSolver::add_over_ranks(Totals& totals) const {
-  PetscFunctionBegin;
-  double local[3] = {totals.open, totals.residual_square, totals.step_square}, all[3];
-  PetscCallMPI(MPI_Allreduce(local, all, 3, MPI_DOUBLE, MPI_SUM, PetscObjectComm((PetscObject)snes_.get())));
-  totals = {all[0], all[1], all[2]};
+  gathered_.from.clear();
+  PetscCall(solve_open(totals, report.iterations));
+  put_back();
+  report.unsolved = open_;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 // Residuals and slopes of all slices at x; of the padding beyond the system they stay 0.
-PetscErrorCode SliceSolver::evaluate(Vec x, Vec f) {
+PetscErrorCode SliceSolver::evaluate(Vec x, Vec f, bool&) {
   PetscFunctionBegin;
   const PetscScalar* iterate = nullptr;
   PetscScalar* residual = nullptr;
@@ -199,163 +162,143 @@ PetscErrorCode SliceSolver::evaluate(Vec x, Vec f) {
     PetscCall(VecRestoreArrayWrite(f, &residual));
   }
   PetscCall(VecRestoreArrayRead(x, &iterate));
-  current_ = x == solution_.get();
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SliceSolver::form_function(SNES, Vec x, Vec f, void* context) {
+PetscErrorCode SliceSolver::assemble(Mat jacobian) {
   PetscFunctionBegin;
-  auto& self = *static_cast<SliceSolver*>(context);
-  self.blockwise_ = false;
-  PetscCall(self.evaluate(x, f));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode SliceSolver::form_jacobian(SNES, Vec x, Mat, Mat preconditioner, void* context) {
-  PetscFunctionBegin;
-  auto& self = *static_cast<SliceSolver*>(context);
-  // The slopes usually come with the residual; another line search may have left them at a trial point.
-  if (!self.current_) PetscCall(self.evaluate(x, nullptr));
-  if (self.assembled_) {
-    PetscInt first = 0, last = 0;
-    PetscCall(MatGetOwnershipRange(preconditioner, &first, &last));
-    for (PetscInt row = first / 2; row < last / 2; ++row) {
-      const std::size_t slice = row - first / 2, pack = slice / pack_width, place = slice % pack_width;
-      const bool padding = pack >= self.states_->size();
-      const PetscScalar block[4] = {1, padding ? 0 : -(*self.states_)[pack].strain_slope[place],
-                                    padding ? 0 : -(*self.states_)[pack].bandage_slope[place], 1};
-      PetscCall(MatSetValuesBlocked(preconditioner, 1, &row, 1, &row, block, INSERT_VALUES));
-    }
+  PetscInt first = 0, last = 0;
+  PetscCall(MatGetOwnershipRange(jacobian, &first, &last));
+  for (PetscInt row = first / 2; row < last / 2; ++row) {
+    const std::size_t slice = row - first / 2, pack = slice / pack_width, place = slice % pack_width;
+    const bool padding = pack >= states_->size();
+    const PetscScalar block[4] = {1, padding ? 0 : -(*states_)[pack].strain_slope[place],
+                                  padding ? 0 : -(*states_)[pack].bandage_slope[place], 1};
+    PetscCall(MatSetValuesBlocked(jacobian, 1, &row, 1, &row, block, INSERT_VALUES));
   }
-  PetscCall(MatAssemblyBegin(preconditioner, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(preconditioner, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SliceSolver::multiply(Mat jacobian, Vec x, Vec y) {
-  PetscFunctionBegin;
-  void* context = nullptr;
-  PetscCall(MatShellGetContext(jacobian, &context));
-  const auto& states = *static_cast<SliceSolver*>(context)->states_;
-  const PetscScalar* in = nullptr;
-  PetscScalar* out = nullptr;
-  PetscCall(VecCopy(x, y));
-  PetscCall(VecGetArrayRead(x, &in));
-  PetscCall(VecGetArray(y, &out));
-  for (std::size_t k = 0; k < states.size(); ++k)
+void SliceSolver::multiply(const PetscScalar* in, PetscScalar* out) {
+  for (std::size_t k = 0; k < states_->size(); ++k)
     for (int i = 0; i < pack_width; ++i) {
       const std::size_t place = 2 * (pack_width * k + i);
-      out[place] -= states[k].strain_slope[i] * in[place + 1];
-      out[place + 1] -= states[k].bandage_slope[i] * in[place];
+      out[place] -= (*states_)[k].strain_slope[i] * in[place + 1];
+      out[place + 1] -= (*states_)[k].bandage_slope[i] * in[place];
     }
-  PetscCall(VecRestoreArray(y, &out));
-  PetscCall(VecRestoreArrayRead(x, &in));
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SliceSolver::invert(PC preconditioner, Vec x, Vec y) {
-  PetscFunctionBegin;
-  void* context = nullptr;
-  PetscCall(PCShellGetContext(preconditioner, &context));
-  const auto& states = *static_cast<SliceSolver*>(context)->states_;
-  const PetscScalar* in = nullptr;
-  PetscScalar* out = nullptr;
-  PetscCall(VecGetArrayRead(x, &in));
-  PetscCall(VecGetArrayWrite(y, &out));
+void SliceSolver::invert(const PetscScalar* in, PetscScalar* out) {
   Pack strain_residual, pressure_residual, strain, pressure;
-  for (std::size_t k = 0; k < states.size(); ++k) {
-    const std::size_t place = 2 * pack_width * k;
-    read_pairs(in + place, strain_residual, pressure_residual);
-    physics::solve_blocks(states[k].strain_slope, states[k].bandage_slope, strain_residual, pressure_residual,
-                          strain, pressure);
-    write_pairs(strain, pressure, out + place);
-  }
-  PetscInt size = 0;
-  PetscCall(VecGetLocalSize(y, &size));
-  for (PetscInt i = 2 * pack_width * states.size(); i < size; ++i) out[i] = in[i];
-  PetscCall(VecRestoreArrayWrite(y, &out));
-  PetscCall(VecRestoreArrayRead(x, &in));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-// The line search: each open slice takes its own step, and its residual and slopes are renewed on the way.
-PetscErrorCode SliceSolver::advance(SNESLineSearch search, void* context) {
-  PetscFunctionBegin;
-  auto& self = *static_cast<SliceSolver*>(context);
-  Vec x = nullptr, f = nullptr, y = nullptr;
-  PetscCall(SNESLineSearchGetVecs(search, &x, &f, &y, nullptr, nullptr));
-  const PetscScalar* direction = nullptr;
-  PetscScalar *iterate = nullptr, *residual = nullptr;
-  PetscCall(VecGetArrayRead(y, &direction));
-  PetscCall(VecGetArray(x, &iterate));
-  PetscCall(VecGetArray(f, &residual));
-  Totals totals;
-  for (std::size_t k = 0; k < self.states_->size(); ++k) {
-    PackState& state = (*self.states_)[k];
-    if (count_open(state) == 0) continue;
-    const std::size_t place = 2 * pack_width * k;
-    Pack unused, pressure, before = state.pressure;
-    read_pairs(direction + place, unused, pressure);
-    if (self.newton_)
-      physics::advance_newton(self.system_->shape(), self.system_->pack(k), pressure, self.tolerance_, state);
-    else
-      physics::advance_fixed_point(self.system_->shape(), self.system_->pack(k), pressure,
-                                   self.fixed_point_tolerance_, state);
-    write_pairs(state.strain, state.pressure, iterate + place);
-    write_pairs(state.strain_residual, state.pressure_residual, residual + place);
-    for (int i = 0; i < pack_width; ++i) {
-      const double step = state.pressure[i] - before[i];
-      totals.open += state.open[i];
-      totals.residual_square += state.open[i] * state.pressure_residual[i] * state.pressure_residual[i];
-      totals.step_square += step * step;
+  for (const Work& work : work_) {
+    if (work.from) {
+      for (int i = 0; i < pack_width; ++i) {
+        strain_residual[i] = in[2 * work.slice(i)];
+        pressure_residual[i] = in[2 * work.slice(i) + 1];
+      }
+    } else {
+      read_pairs(in + 2 * work.first, strain_residual, pressure_residual);
+    }
+    physics::solve_blocks(work.state->strain_slope, work.state->bandage_slope, strain_residual,
+                          pressure_residual, strain, pressure);
+    if (!work.from) write_pairs(strain, pressure, out + 2 * work.first);
+    for (int i = 0; work.from && i < work.count; ++i) {
+      out[2 * work.slice(i)] = strain[i];
+      out[2 * work.slice(i) + 1] = pressure[i];
     }
   }
-  PetscCall(VecRestoreArray(f, &residual));
-  PetscCall(VecRestoreArray(x, &iterate));
-  PetscCall(VecRestoreArrayRead(y, &direction));
-  self.current_ = true;
-  self.blockwise_ = true;
-  PetscCall(self.add_over_ranks(totals));
-  self.open_ = totals.open;
-  PetscCall(
-      SNESLineSearchSetNorms(search, 1, std::sqrt(totals.residual_square), std::sqrt(totals.step_square)));
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-// After a step that another line search or solver has taken: slices whose next Newton step is small enough
-// close.
-PetscErrorCode SliceSolver::close_where_converged(SNES snes) {
-  PetscFunctionBegin;
-  Vec x = nullptr;
-  PetscCall(SNESGetSolution(snes, &x));
-  if (!current_) PetscCall(evaluate(x, nullptr));
+void SliceSolver::step(const PetscScalar* direction, PetscScalar* iterate, PetscScalar* residual,
+                       Totals& totals) {
+  Pack unused, pressure, before;
+  std::size_t left = 0;  // packs that are still open move to the front
+  for (const Work& work : work_) {
+    PackState& state = *work.state;
+    before = state.pressure;
+    if (work.from)
+      for (int i = 0; i < pack_width; ++i) pressure[i] = direction[2 * work.slice(i) + 1];
+    else
+      read_pairs(direction + 2 * work.first, unused, pressure);
+    if (newton_)
+      physics::advance_newton(system_->shape(), work.rows, pressure, tolerance_, state);
+    else
+      physics::advance_fixed_point(system_->shape(), work.rows, pressure, fixed_point_tolerance_, state);
+    if (!work.from) {
+      write_pairs(state.strain, state.pressure, iterate + 2 * work.first);
+      write_pairs(state.strain_residual, state.pressure_residual, residual + 2 * work.first);
+    }
+    double open = 0;
+    for (int i = 0; i < pack_width; ++i) {
+      const double change = state.pressure[i] - before[i];
+      open += state.open[i];
+      totals.residual_square += state.open[i] * state.pressure_residual[i] * state.pressure_residual[i];
+      totals.step_square += change * change;
+      if (!work.from || i >= work.count) continue;
+      const std::size_t place = 2 * work.slice(i);
+      iterate[place] = state.strain[i];
+      iterate[place + 1] = state.pressure[i];
+      residual[place] = state.strain_residual[i];
+      residual[place + 1] = state.pressure_residual[i];
+    }
+    totals.open += open;
+    if (open > 0) work_[left++] = work;
+  }
+  work_.resize(left);
+  if (own_inverse_ && left > 1 && totals.open < sparse * pack_width * static_cast<double>(left))
+    gather_open();
+}
+
+// Open slices into packs of their own.
+void SliceSolver::gather_open() {
+  std::vector<std::size_t> open;
+  for (const Work& work : work_)
+    for (int i = 0; i < work.count; ++i)
+      if (work.state->open[i] > 0) open.push_back(work.slice(i));
+  put_back();
+  const std::size_t packs = (open.size() + pack_width - 1) / pack_width, rows = system_->rows_per_pack();
+  gathered_.rows.resize(packs * rows);
+  gathered_.states.resize(packs);
+  gathered_.from = std::move(open);
+  gathered_.count = gathered_.from.size();
+  gathered_.from.resize(packs * pack_width, gathered_.from.back());
+  work_.clear();
+  for (std::size_t k = 0; k < packs; ++k) {
+    const std::size_t first = k * pack_width;
+    Pack* constants = gathered_.rows.data() + k * rows;
+    for (int i = 0; i < pack_width; ++i) {
+      const std::size_t slice = gathered_.from[first + i];
+      const Pack* source = system_->pack(slice / pack_width);
+      for (std::size_t row = 0; row < rows; ++row) constants[row][i] = source[row][slice % pack_width];
+      copy_slice((*states_)[slice / pack_width], slice % pack_width, gathered_.states[k], i);
+      // The spare places of the last pack repeat its last slice, closed.
+      if (first + i >= gathered_.count) gathered_.states[k].open[i] = 0;
+    }
+    work_.push_back({constants, &gathered_.states[k], 0, gathered_.from.data() + first,
+                     static_cast<int>(std::min<std::size_t>(pack_width, gathered_.count - first))});
+  }
+}
+
+void SliceSolver::put_back() {
+  for (std::size_t j = 0; j < gathered_.from.size() && j < gathered_.count; ++j) {
+    const std::size_t slice = gathered_.from[j];
+    copy_slice(gathered_.states[j / pack_width], j % pack_width, (*states_)[slice / pack_width],
+               slice % pack_width);
+  }
+  gathered_.from.clear();
+}
+
+void SliceSolver::close_small_steps(Totals& totals) {
   Pack strain, pressure;
   for (PackState& state : *states_) {
     physics::solve_blocks(state.strain_slope, state.bandage_slope, state.strain_residual,
                           state.pressure_residual, strain, pressure);
-    for (int i = 0; i < pack_width; ++i)
+    for (int i = 0; i < pack_width; ++i) {
       if (std::fabs(pressure[i]) <= tolerance_ * std::fabs(state.pressure[i])) state.open[i] = 0;
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode SliceSolver::converged(SNES snes, PetscInt iteration, PetscReal, PetscReal, PetscReal,
-                                      SNESConvergedReason* reason, void* context) {
-  PetscFunctionBegin;
-  auto& self = *static_cast<SliceSolver*>(context);
-  if (!self.blockwise_) {
-    if (iteration > 0) {
-      PetscCall(self.close_where_converged(snes));
-      for (PackState& state : *self.states_)
-        for (int i = 0; i < pack_width; ++i) state.iterations[i] += state.open[i];
+      state.iterations[i] += state.open[i];
     }
-    Totals totals;
-    for (const PackState& state : *self.states_) totals.open += count_open(state);
-    PetscCall(self.add_over_ranks(totals));
-    self.open_ = totals.open;
+    totals.open += count_open(state);
   }
-  *reason = self.open_ == 0 ? SNES_CONVERGED_FNORM_ABS : SNES_CONVERGED_ITERATING;
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 }  // namespace gaiter::solvers

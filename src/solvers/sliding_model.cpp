@@ -33,7 +33,7 @@ double voltage_of(const SegmentTask& task) {
 
 int wall_points_of(const SegmentTask& task) {
   const int asked = task.scene->discretisation.wall_points;
-  return asked > 0 ? asked : physics::wall_points_for(*task.scene, task.segment, wall_tolerance);
+  return asked > 0 ? asked : physics::wall_points_for(*task.scene, task.segment, wall_tolerance).points;
 }
 
 // What all of these tasks fit into.

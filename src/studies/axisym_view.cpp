@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "gaiter/archive/agree.hpp"
-#include "gaiter/archive/output_file.hpp"
+#include "gaiter/archive/durable_file.hpp"
 #include "gaiter/archive/vtk_file.hpp"
 
 namespace gaiter::studies {

@@ -31,12 +31,16 @@ std::string help_text() {
       "\n"
       "Commands\n"
       "  solve   one scene: prints a table, writes an archive\n"
-      "  sweep   many designs: the grid of all -sweep_<option> lists\n"
+      "  sweep   many designs: -sweep_<option> SPEC for each option that varies, SPEC being a list 1.4,1.6,\n"
+      "          linspace(lo,hi,n), logspace(lo,hi,n), uniform(lo,hi) or normal(mean,sd); run again, the "
+      "same\n"
+      "          command goes on where it was stopped\n"
       "\n"
       "Values carry units (\"1 mm\", \"11.3 kV\", \"28.5 mmHg\"); a bare number is SI. A list is separated "
       "by\n"
       "commas; a unit after its last number holds for all. <s> is the name of a segment of the leg.\n"
-      "Options marked * can be swept. PETSc's options tune the solver: -slice_snes_..., -slice_ksp_...\n"
+      "Options marked * can be swept, one number at a time. PETSc's options tune the solver: "
+      "-slice_snes_..., -slice_ksp_...\n"
       "\n"
       "Options\n";
   std::size_t name = 0, unit = 0, default_text = 0;

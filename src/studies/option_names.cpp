@@ -105,8 +105,12 @@ std::vector<model::Segment> parse_segments(std::string_view name, std::string_vi
 std::string nearest_option(std::string_view name, std::span<const model::Segment> segments) {
   std::vector<std::string> candidates;
   const auto add = [&](const Option& entry, std::string_view segment) {
-    candidates.push_back(name_for(entry, segment));
-    if (entry.sweepable) candidates.push_back("sweep_" + candidates.back());
+    const std::string name = name_for(entry, segment);
+    candidates.push_back(name);
+    if (!entry.sweepable) return;
+    if (entry.count.most == 1) candidates.push_back("sweep_" + name);
+    for (std::size_t i = 0; entry.count.most > 1 && i < entry.count.most; ++i)
+      candidates.push_back(fmt::format("sweep_{}_{}", name, component_name(entry, i)));
   };
   for (const Option& entry : option_table()) {
     if (entry.name == "sweep_<option>") continue;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 
 namespace gaiter::studies {
@@ -15,6 +16,7 @@ using Values = std::span<const double>;
 // The ranges keep out slips of unit and sign; they admit every extreme the solver is tested at.
 constexpr Range radii{.low = 1e-4, .high = 10};
 constexpr Range stretches{.low = 0, .high = 20, .low_open = true};
+constexpr Range scales{.low = 0.01, .high = 100};
 constexpr Range voltages{.low = 0, .high = 1e9};
 constexpr Range positive{.low = 0, .low_open = true, .high_open = true};
 constexpr Range positive_or_infinite{.low = 0, .low_open = true};
@@ -45,6 +47,7 @@ std::vector<Option> make_table() {
        .components = {{.range = {.low = 2, .high = 4}}},
        .default_text = "2",
        .doc = "Polynomial order of the finite elements' displacement.",
+       .sweepable = true,
        .set = [](Scene& s, std::size_t, Values v) { s.axisym.order = static_cast<int>(v[0]); }},
       {.name = "axisym_ranks_per_case",
        .kind = Kind::count,
@@ -57,6 +60,7 @@ std::vector<Option> make_table() {
        .components = {{.range = {.low = 0, .high = 8}}},
        .default_text = "1",
        .doc = "Uniform refinements of the coarsest finite element mesh (some 600 unknowns a segment).",
+       .sweepable = true,
        .set = [](Scene& s, std::size_t, Values v) { s.axisym.refine = static_cast<int>(v[0]); }},
       {.name = "axisym_scope",
        .kind = Kind::choice,
@@ -126,6 +130,7 @@ std::vector<Option> make_table() {
        .components = {{.range = {.low = 0, .high = 50, .low_open = true, .magnitude = true}}},
        .example = "3.507, 12.147",
        .doc = "Ogden exponents, one a term of W = sum mu/alpha (l1^alpha + l2^alpha + l3^alpha - 3).",
+       .sweepable = true,
        .set =
            [](Scene& s, std::size_t, Values v) {
              s.bandage.ogden.resize(v.size());
@@ -136,6 +141,7 @@ std::vector<Option> make_table() {
        .components = {{.unit = "Pa", .range = {.low = 1e-2, .high = 1e12, .magnitude = true}}},
        .example = "21.193 kPa, 10.514 Pa",
        .doc = "Ogden moduli, one a term; the initial shear modulus, half the sum of mu alpha, is positive.",
+       .sweepable = true,
        .set =
            [](Scene& s, std::size_t, Values v) {
              s.bandage.ogden.resize(v.size());
@@ -161,12 +167,6 @@ std::vector<Option> make_table() {
        .doc = "Undeformed wall; leaves a hole in the reference tube.",
        .sweepable = true,
        .set = [](Scene& s, std::size_t, Values v) { s.bandage.thickness = v[0]; }},
-      {.name = "comparison",
-       .kind = Kind::choice,
-       .scope = Scope::program,
-       .choices = {"none", "paper"},
-       .default_text = "none",
-       .doc = "Print the paper's printed results beside the computed ones."},
       {.name = "contact_axial",
        .kind = Kind::choice,
        .choices = {"free", "held"},
@@ -175,11 +175,6 @@ std::vector<Option> make_table() {
               "(fidelity sliding and axisym).",
        .set = [](Scene& s, std::size_t,
                  Values v) { s.contact_axial = static_cast<model::ContactAxial>(static_cast<int>(v[0])); }},
-      {.name = "dry_run",
-       .kind = Kind::flag,
-       .scope = Scope::program,
-       .default_text = "false",
-       .doc = "Print the resolved scene, every default included, and stop."},
       {.name = "fidelity",
        .kind = Kind::choice,
        .choices = {"rigid", "slice", "sliding", "axisym"},
@@ -189,12 +184,6 @@ std::vector<Option> make_table() {
               "coupled by a tube that slides along the leg, or both bodies by finite elements in contact.",
        .set = [](Scene& s, std::size_t,
                  Values v) { s.fidelity = static_cast<model::Fidelity>(static_cast<int>(v[0])); }},
-      {.name = "help",
-       .kind = Kind::text,
-       .scope = Scope::program,
-       .format = "nothing, or markdown",
-       .example = "markdown",
-       .doc = "List commands and options, and stop."},
       {.name = "leg_<s>_compliance",
        .scope = Scope::one_segment,
        .count = {4, 4},
@@ -204,9 +193,11 @@ std::vector<Option> make_table() {
                       {"d", "Pa-1", {.high = 0, .low_open = true, .high_open = true}}},
        .example = "0.013392, 7.898e-5, -0.016, -0.001137",
        .doc = "Constants a,b,c,d of the radial strain a exp(b P) + c exp(d P); a + c is above -1.",
+       .sweepable = true,
        .set =
            [](Scene& s, std::size_t i, Values v) {
-             s.leg.segments[i].compliance = {v[0], v[1], v[2], v[3]};
+             s.leg.segments[i].given.compliance = {v[0], v[1], v[2], v[3]};
+             s.leg.scale();
            }},
       {.name = "leg_<s>_height",
        .scope = Scope::one_segment,
@@ -218,13 +209,15 @@ std::vector<Option> make_table() {
       {.name = "leg_<s>_radius",
        .scope = Scope::one_segment,
        .count = {2, 2},
-       .components = {{.unit = "m", .range = radii}},
+       .components = {{"lower", "m", radii}, {"upper", "m", radii}},
        .example = "35.85 mm, 43.37 mm",
        .doc = "Undeformed radii of the segment, at the end nearer the ankle and at the end nearer the knee.",
+       .sweepable = true,
        .set =
            [](Scene& s, std::size_t i, Values v) {
-             s.leg.segments[i].lower_radius = v[0];
-             s.leg.segments[i].upper_radius = v[1];
+             s.leg.segments[i].given.lower_radius = v[0];
+             s.leg.segments[i].given.upper_radius = v[1];
+             s.leg.scale();
            }},
       {.name = "leg_compliance_data_limit",
        .components = {{.unit = "Pa", .range = positive_or_infinite}},
@@ -232,6 +225,17 @@ std::vector<Option> make_table() {
        .doc = "Pressure up to which the compliance was measured; results beyond are marked extrapolated.",
        .sweepable = true,
        .set = [](Scene& s, std::size_t, Values v) { s.leg.data_limit = v[0]; }},
+      {.name = "leg_compliance_scale",
+       .components = {{.range = scales}},
+       .default_text = "1",
+       .doc =
+           "Factor on the strains of leg_<s>_compliance (its a and c): a leg that gives way more, or less.",
+       .sweepable = true,
+       .set =
+           [](Scene& s, std::size_t, Values v) {
+             s.leg.compliance_scale = v[0];
+             s.leg.scale();
+           }},
       {.name = "leg_compliance_variant",
        .kind = Kind::choice,
        .choices = {"published", "anchored"},
@@ -261,13 +265,16 @@ std::vector<Option> make_table() {
        .doc = "Poisson's ratio of the neo-Hookean leg.",
        .sweepable = true,
        .set = [](Scene& s, std::size_t, Values v) { s.leg.poisson_ratio = v[0]; }},
-      {.name = "leg_segments",
-       .kind = Kind::text,
-       .scope = Scope::program,
-       .count = {1, 100000},
-       .format = "names of letters, digits and _, ankle up",
-       .example = "r6,r5,r4,r3,r2,r1",
-       .doc = "Names of the leg's segments; each one has a bandage module."},
+      {.name = "leg_radius_scale",
+       .components = {{.range = scales}},
+       .default_text = "1",
+       .doc = "Factor on leg_<s>_radius of all segments: a thicker or a thinner leg of the same shape.",
+       .sweepable = true,
+       .set =
+           [](Scene& s, std::size_t, Values v) {
+             s.leg.radius_scale = v[0];
+             s.leg.scale();
+           }},
       {.name = "leg_shear_modulus",
        .components = {{.unit = "Pa", .range = {.low = 0, .high = 1e12, .low_open = true}}},
        .default_text = "10 kPa",
@@ -280,28 +287,18 @@ std::vector<Option> make_table() {
        .doc = "Young's modulus of the neo-Hookean leg.",
        .sweepable = true,
        .set = [](Scene& s, std::size_t, Values v) { s.leg.young_modulus = v[0]; }},
-      {.name = "options_file",
-       .kind = Kind::text,
-       .scope = Scope::program,
-       .format = "a YAML file",
-       .example = "options/scenes/paper.yaml",
-       .doc = "Options from a file, nested keys joined by _; the command line wins."},
-      {.name = "output",
-       .kind = Kind::text,
-       .scope = Scope::program,
-       .format = "a file name",
-       .default_text = "gaiter.h5",
-       .doc = "Archive to write (HDF5)."},
       {.name = "slice_count",
        .kind = Kind::count,
        .components = {{.range = {.low = 1, .high = 100000}}},
        .default_text = "6",
        .doc = "Slices a segment.",
+       .sweepable = true,
        .set = [](Scene& s, std::size_t, Values v) { s.discretisation.slice_count = static_cast<int>(v[0]); }},
       {.name = "slice_fixed_point_tolerance",
        .components = {{.range = {.low = 1e-16, .high = 0.1}}},
        .default_text = "1e-4",
        .doc = "The fixed point stops once the radius changes by less than this part of the undeformed one.",
+       .sweepable = true,
        .set = [](Scene& s, std::size_t, Values v) { s.discretisation.fixed_point_tolerance = v[0]; }},
       {.name = "slice_rule",
        .kind = Kind::choice,
@@ -326,15 +323,9 @@ std::vector<Option> make_table() {
        .components = {{.range = {.low = 3, .high = 100000}}},
        .default_text = "24",
        .doc = "Slices a segment at fidelity sliding, rounded up to a multiple of three.",
+       .sweepable = true,
        .set = [](Scene& s, std::size_t,
                  Values v) { s.discretisation.sliding_count = static_cast<int>(v[0]); }},
-      {.name = "sweep_<option>",
-       .kind = Kind::text,
-       .scope = Scope::program,
-       .format = "a list of values that the option itself allows",
-       .example = "1.4,1.6,1.8",
-       .doc = "Values of one option to sweep; several such options make a grid.",
-       .commands = {Command::sweep}},
       {.name = "voltage",
        .scope = Scope::every_segment,
        .components = {{.unit = "V", .range = voltages}},
@@ -349,6 +340,7 @@ std::vector<Option> make_table() {
        .word = {"auto", 0},
        .default_text = "auto",
        .doc = "Gauss points through the wall; 1 is a thin wall, auto takes as many as the wall needs.",
+       .sweepable = true,
        .set = [](Scene& s, std::size_t, Values v) { s.discretisation.wall_points = static_cast<int>(v[0]); }},
   };
 }
@@ -363,7 +355,12 @@ bool Range::contains(double value) const {
 }
 
 std::span<const Option> option_table() {
-  static const std::vector<Option> table = make_table();
+  static const std::vector<Option> table = [] {
+    std::vector<Option> all = make_table();
+    std::ranges::move(program_options(), std::back_inserter(all));
+    std::ranges::sort(all, {}, &Option::name);
+    return all;
+  }();
   return table;
 }
 
@@ -380,6 +377,11 @@ std::string name_for(const Option& option, std::string_view segment) {
   std::string name(option.name);
   if (const auto at = name.find("<s>"); at != std::string::npos) name.replace(at, 3, segment);
   return name;
+}
+
+std::string component_name(const Option& option, std::size_t component) {
+  const std::string_view label = option.component(component).label;
+  return label.empty() || option.components.size() == 1 ? std::to_string(component + 1) : std::string(label);
 }
 
 }  // namespace gaiter::studies

@@ -121,9 +121,12 @@ std::vector<double> parse_values(const Option& option, std::string_view name, st
   return parse_list(option, name, text, option.count);
 }
 
-std::vector<double> parse_sweep_values(const Option& option, std::string_view name, std::string_view text) {
-  if (base::trim(text).empty()) throw value_error(option, name, text, "a value is missing");
-  return parse_list(option, name, text, {1, std::string_view::npos});
+std::vector<double> parse_component_list(const Option& option, std::size_t component, std::string_view name,
+                                         std::string_view text) {
+  Option one = option;
+  one.components = {option.component(component)};
+  one.count = {1, 1};
+  return parse_list(one, name, text, {1, std::string_view::npos});
 }
 
 std::string format_number(const Option& option, double value, std::size_t component) {
@@ -139,6 +142,10 @@ std::string format_values(const Option& option, std::span<const double> values) 
   for (std::size_t i = 0; i < values.size(); ++i) items.push_back(format_number(option, values[i], i));
   const std::string list = fmt::format("{}", fmt::join(items, ", "));
   return items.size() == 1 ? list : "[" + list + "]";
+}
+
+std::string allowed(const Option& option, std::size_t component) {
+  return (option.kind == Kind::count ? "a whole number " : "") + allowed(option.component(component));
 }
 
 std::string allowed(const Option& option) {

@@ -35,6 +35,8 @@ std::string_view meaning(model::Status status) {
       return "no equilibrium exists at any admissible radius";
     case model::Status::diverged:
       return "the solver did not converge";
+    case model::Status::invalid:
+      return "the values of the design make no possible scene; it was not solved";
   }
   return "";
 }
@@ -47,7 +49,7 @@ std::string result_table(const model::Scene& scene, std::span<const model::Segme
                   "pressure at rest", "actuated", "drop", "rigid leg", "volume", "steps", "status");
   text += fmt::format("{:<10}{:>8}{:>20}{:>20}{:>10}{:>12}{:>10}\n", "", "", "kPa (mmHg)", "kPa (mmHg)", "Pa",
                       "kPa, rest", "change %");
-  std::array<bool, 7> seen{};
+  std::array<bool, model::status_count> seen{};
   std::string notes;
   for (std::size_t i = 0; i < results.size(); ++i) {
     const model::SegmentResult& r = results[i];
@@ -74,21 +76,21 @@ std::string result_table(const model::Scene& scene, std::span<const model::Segme
   return text + notes;
 }
 
-std::string status_summary(std::span<const double> counts, std::size_t designs, double seconds,
-                           const std::string& archive) {
-  double failed = 0, rows = 0;
-  std::string text = fmt::format("{} designs in {:.3g} s\n", designs, seconds);
+std::string status_summary(std::span<const std::int64_t> counts, const std::string& archive) {
+  std::int64_t failed = 0, rows = 0;
+  std::string text;
   for (std::size_t i = 0; i < counts.size(); ++i) {
     const auto status = static_cast<model::Status>(i);
     rows += counts[i];
     if (counts[i] > 0)
-      text += fmt::format("  {:>10.0f} segments {}: {}\n", counts[i], archive::word(status), meaning(status));
+      text += fmt::format("  {:>10} segments {}: {}\n", counts[i], archive::word(status), meaning(status));
     if (!model::trustworthy(status)) failed += counts[i];
   }
   if (failed > 0)
     text += fmt::format(
-        "{:.0f} of {:.0f} segments have no trustworthy result; list them with\n"
-        "  python3 -c \"import h5py; s = h5py.File('{}')['status'][:]; print((s >= {}).nonzero())\"\n",
+        "{} of {} segments have no trustworthy result; list case, segment and status of each with\n"
+        "  python3 -c \"import h5py; s = h5py.File('{}')['status'][:]; "
+        "[print(*i, s[tuple(i)]) for i in zip(*(s >= {}).nonzero())]\"\n",
         failed, rows, archive, static_cast<int>(model::Status::no_equilibrium));
   return text;
 }

@@ -5,12 +5,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <numbers>
 #include <optional>
 
+#include "gaiter/archive/schema.hpp"
 #include "gaiter/base/text.hpp"
-#include "gaiter/studies/axisym_checks.hpp"
 #include "gaiter/studies/option_values.hpp"
+#include "gaiter/studies/request_parser.hpp"
 
 namespace gaiter::studies {
 
@@ -18,20 +18,13 @@ namespace {
 
 using base::InputError;
 
-constexpr std::string_view sweep_prefix = "sweep_";
 constexpr std::string_view segment_mark = "<s>";
 
-struct Given {
-  std::string name;  // as the user wrote it
-  std::string text;
-};
-
-// An option as given, read.
-struct Setting {
-  const Option* option;
-  std::size_t segment;  // 0 where the option belongs to no segment
-  std::vector<double> values;
-};
+// Whether to stop first and what to tell meanwhile is not part of what is computed. Nor is where the archive
+// goes, which is a text.
+bool of_the_run(std::string_view name) {
+  return name == "dry_run" || name == "progress";
+}
 
 std::string names_of(std::span<const model::Segment> segments) {
   std::vector<std::string_view> names;
@@ -39,38 +32,7 @@ std::string names_of(std::span<const model::Segment> segments) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-class Parser {
- public:
-  Parser(Command command, const std::map<std::string, std::string>& given);
-  Request run();
-
- private:
-  struct Match {
-    const Option* option;
-    std::size_t segment;
-  };
-
-  void read_segments();
-  void read_settings();
-  void read_axis(const Given& given);
-  std::optional<Match> match(std::string_view lower_name, const Given& given) const;
-  void check_each_module();
-  void apply();
-  void check_designs();
-  std::vector<std::size_t> segments_left_to(const Option& entry) const;
-  void check_counts() const;
-  std::string resolved_text() const;
-
-  const Setting* find(std::string_view name) const;
-  bool swept(std::string_view name) const;
-  bool has(std::string_view name) const { return find(name) != nullptr || swept(name); }
-  [[noreturn]] void missing(const Option& entry, std::string_view name) const;
-
-  Command command_;
-  std::map<std::string, Given> given_;       // by name in lower case
-  std::map<std::string, Setting> settings_;  // by name, with the segment's name in it
-  Request request_;
-};
+}  // namespace
 
 Parser::Parser(Command command, const std::map<std::string, std::string>& given) : command_(command) {
   for (const auto& [name, text] : given) {
@@ -85,6 +47,8 @@ Request Parser::run() {
   read_settings();
   check_each_module();
   check_counts();
+  read_sampling();
+  give_bases();
   apply();
   check_designs();
   request_.text = resolved_text();
@@ -148,7 +112,7 @@ std::optional<Parser::Match> Parser::match(std::string_view lower_name, const Gi
 
 void Parser::read_settings() {
   for (const auto& [lower_name, given] : given_) {
-    if (lower_name.starts_with(sweep_prefix)) {
+    if (lower_name.starts_with("sweep_") && !is_sampling(lower_name)) {
       read_axis(given);
       continue;
     }
@@ -159,12 +123,15 @@ void Parser::read_settings() {
     }
     const Option& entry = *found->option;
     const std::string name = name_for(entry, request_.scene.leg.segments[found->segment].name);
+    if (is_sampling(lower_name) && command_ != Command::sweep) refuse_outside_sweep(given);
     if (entry.kind != Kind::text) {
       settings_[name] = {&entry, found->segment, parse_values(entry, given.name, given.text)};
     } else if (name == "output" || name == "axisym_view") {
       std::string& path = name == "output" ? request_.output : request_.axisym_view;
       path = base::trim(given.text);
       if (path.empty()) throw value_error(entry, given.name, given.text, "a value is missing");
+    } else if (name == "output_variables") {
+      read_output_variables(given);
     } else if (name == "options_file" || name == "help") {
       // Those of the command line are taken from it before PETSc sees them.
       throw InputError(fmt::format("-{} '{}': belongs on the command line, not in an options file",
@@ -176,7 +143,7 @@ void Parser::read_settings() {
   if (command_ == Command::sweep && request_.axes.empty()) {
     const auto& segments = request_.scene.leg.segments;
     for (const std::string& unknown : request_.unknown) {
-      if (nearest_option(unknown, segments).starts_with(sweep_prefix)) {
+      if (nearest_option(unknown, segments).starts_with("sweep_")) {
         throw unknown_option(unknown, segments);
       }
     }
@@ -185,30 +152,21 @@ void Parser::read_settings() {
   }
 }
 
-void Parser::read_axis(const Given& given) {
-  const std::string swept_name = base::lower(given.name).substr(sweep_prefix.size());
-  const auto found = match(swept_name, given);
-  if (!found) {
-    request_.unknown.push_back(given.name);
-    return;
+void Parser::read_output_variables(const Given& given) {
+  if (base::lower(base::trim(given.text)) == "all") return;
+  std::vector<std::string> names, chosen{"status"};
+  for (const archive::Column& column : archive::columns()) names.emplace_back(column.name);
+  for (const std::string_view item : base::split(given.text)) {
+    chosen.emplace_back(base::trim(item));
+    if (std::ranges::find(names, chosen.back()) != names.end()) continue;
+    const std::string near = base::nearest(chosen.back(), names);
+    throw InputError(fmt::format("-{} '{}': no result is named '{}'{}; must be all or some of {}", given.name,
+                                 given.text, chosen.back(),
+                                 near.empty() ? "" : fmt::format(", did you mean '{}'?", near),
+                                 fmt::join(names, ", ")));
   }
-  if (command_ != Command::sweep) {
-    throw InputError(
-        fmt::format("-{} '{}': belongs to the command sweep, not to solve", given.name, given.text));
-  }
-  const Option& entry = *found->option;
-  if (!entry.sweepable) {
-    std::vector<std::string_view> sweepable;
-    for (const Option& other : option_table()) {
-      if (other.sweepable) sweepable.push_back(other.name);
-    }
-    throw InputError(fmt::format("-{} '{}': {} cannot be swept; only physical options of one number can: {}",
-                                 given.name, given.text, swept_name, fmt::join(sweepable, ", ")));
-  }
-  request_.axes.push_back({name_for(entry, request_.scene.leg.segments[found->segment].name),
-                           &entry,
-                           {found->segment},
-                           parse_sweep_values(entry, given.name, given.text)});
+  for (const std::string& name : names)
+    if (std::ranges::find(chosen, name) != chosen.end()) request_.output_variables.push_back(name);
 }
 
 // Values a scene cannot do without, and those that exclude each other.
@@ -279,6 +237,7 @@ void Parser::apply() {
     const std::vector<double> values =
         setting ? setting->values : parse_values(entry, entry.name, entry.default_text);
     if (entry.name == "dry_run") request_.dry_run = values[0] != 0;
+    if (entry.name == "progress") request_.progress = static_cast<Progress>(static_cast<int>(values[0]));
     if (entry.name == "comparison")
       request_.comparison = static_cast<Comparison>(static_cast<int>(values[0]));
     if (entry.set == nullptr) continue;
@@ -293,28 +252,6 @@ void Parser::apply() {
   }
 }
 
-// Every design must be sound before the first is solved, for wrong input writes nothing. What the checks
-// compare grows or falls with each swept value, so a grid is sound where its corners are.
-void Parser::check_designs() {
-  std::vector<SweepAxis> corners;
-  for (SweepAxis& axis : request_.axes) {
-    if (axis.option->scope == Scope::every_segment) axis.segments = segments_left_to(*axis.option);
-    if (axis.segments.empty()) {
-      throw InputError(fmt::format(
-          "-sweep_{}: every segment has a value of its own, nothing is left to sweep", axis.name));
-    }
-    const auto [least, most] = std::ranges::minmax(axis.values);
-    corners.push_back(axis);
-    corners.back().values = least == most ? std::vector{least} : std::vector{least, most};
-  }
-  const Designs designs(request_.axes), corner_designs(std::move(corners));
-  for (std::int64_t i = 0; i < corner_designs.size(); ++i) {
-    corner_designs.apply(i, request_.scene);
-    check_scene(request_.scene);
-  }
-  designs.apply(0, request_.scene);
-}
-
 std::string Parser::resolved_text() const {
   std::vector<std::string_view> segments;
   for (const model::Segment& segment : request_.scene.leg.segments) segments.push_back(segment.name);
@@ -322,73 +259,27 @@ std::string Parser::resolved_text() const {
   lines["leg_segments"] =
       segments.size() == 1 ? std::string(segments[0]) : fmt::format("[{}]", fmt::join(segments, ", "));
   for (const Option& entry : option_table()) {
-    // Where the archive goes and whether to stop first are not part of what is computed.
-    if (entry.kind == Kind::text || entry.name == "dry_run" || entry.default_text.empty()) continue;
+    if (entry.kind == Kind::text || of_the_run(entry.name) || entry.default_text.empty()) continue;
+    if (std::ranges::find(entry.commands, command_) == entry.commands.end()) continue;
     lines[std::string(entry.name)] =
         format_values(entry, parse_values(entry, entry.name, entry.default_text));
   }
+  if (!request_.output_variables.empty())
+    lines["output_variables"] = fmt::format("[{}]", fmt::join(request_.output_variables, ", "));
   for (const auto& [name, setting] : settings_) {
-    if (name != "dry_run") lines[name] = format_values(*setting.option, setting.values);
+    if (!of_the_run(name)) lines[name] = format_values(*setting.option, setting.values);
   }
   for (const SweepAxis& axis : request_.axes) {
-    lines.erase(axis.name);  // the sweep's values stand in its place
-    std::vector<std::string> values;
-    for (const double value : axis.values) values.push_back(format_number(*axis.option, value));
-    lines[fmt::format("{}{}", sweep_prefix, axis.name)] =
-        values.size() == 1 ? values[0] : fmt::format("[{}]", fmt::join(values, ", "));
+    if (axis.option->count.most == 1) lines.erase(axis.name);  // the sweep's values stand in its place
+    lines[fmt::format("{}{}", "sweep_", axis.name)] = axis.values.text(*axis.option, axis.component);
   }
   std::string text;
   for (const auto& [name, value] : lines) text += fmt::format("{}: {}\n", name, value);
   return text;
 }
 
-}  // namespace
-
 Request parse_request(Command command, const std::map<std::string, std::string>& given) {
   return Parser(command, given).run();
-}
-
-void check_scene(const model::Scene& scene) {
-  const model::Bandage& bandage = scene.bandage;
-  for (std::size_t i = 0; i < bandage.modules.size(); ++i) {
-    const model::Module& module = bandage.modules[i];
-    const model::Segment& segment = scene.leg.segments[i];
-    const double radius =
-        module.length > 0 ? module.length / (2 * std::numbers::pi) : segment.mean_radius() / module.stretch;
-    // The hole's radius: the reference radius less the part of the wall inside it.
-    const double inside = bandage.length_at == model::LengthAt::outer    ? bandage.thickness
-                          : bandage.length_at == model::LengthAt::middle ? 0.5 * bandage.thickness
-                                                                         : 0;
-    if (inside >= radius) {
-      const std::string size = module.length > 0 ? fmt::format("length {} m", module.length)
-                                                 : fmt::format("stretch {}", module.stretch);
-      throw InputError(
-          fmt::format("-bandage_thickness '{} m': the module on {} ({}) has a reference radius of {:.6g} m, "
-                      "so the wall must be less than {:.6g} m",
-                      bandage.thickness, segment.name, size, radius, radius * bandage.thickness / inside));
-    }
-    const model::Compliance& law = segment.compliance;
-    if (law.a + law.c <= -1) {
-      throw InputError(
-          fmt::format("-leg_{}_compliance '{}, {} Pa-1, {}, {} Pa-1': a + c must be greater than -1",
-                      segment.name, law.a, law.b, law.c, law.d));
-    }
-  }
-  double twice_modulus = 0;
-  for (const model::OgdenTerm& term : bandage.ogden) twice_modulus += term.mu * term.alpha;
-  if (!(twice_modulus > 0)) {
-    std::vector<double> mu, alpha;
-    for (const model::OgdenTerm& term : bandage.ogden) {
-      mu.push_back(term.mu);
-      alpha.push_back(term.alpha);
-    }
-    throw InputError(
-        fmt::format("-bandage_ogden_mu '{}' with -bandage_ogden_alpha '{}': the initial shear modulus, half "
-                    "the sum of mu alpha, is {:.6g} Pa; it must be greater than 0 Pa",
-                    format_values(option("bandage_ogden_mu"), mu),
-                    format_values(option("bandage_ogden_alpha"), alpha), 0.5 * twice_modulus));
-  }
-  if (scene.fidelity == model::Fidelity::axisym) check_axisym(scene);
 }
 
 }  // namespace gaiter::studies

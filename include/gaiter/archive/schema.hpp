@@ -19,7 +19,7 @@ using Field = std::variant<double model::SegmentResult::*, int model::SegmentRes
                            model::Status model::SegmentResult::*, model::Fidelity model::SegmentResult::*>;
 
 // How a field lies in the file. Enumerations are int8 with the CF attributes flag_values and flag_meanings.
-enum class Stored { float64, int32, int8 };
+enum class Stored { float64, int64, int32, int8 };
 
 // One variable over (case, segment): a field of model::SegmentResult under its own name.
 struct Column {
@@ -34,6 +34,10 @@ std::span<const Column> columns();
 
 Stored stored_as(const Column& column);
 std::size_t bytes_of(Stored stored);
+
+// The columns of these names, in the table's order; `status` is always among them, for without it a NaN has
+// no reason. No name: all columns. Throws base::InputError for a name that no column has.
+std::vector<const Column*> choose_columns(std::span<const std::string> names);
 
 // The words of the column's enumeration; word i belongs to the value i. Empty for numbers.
 std::vector<std::string_view> flag_words(const Column& column);

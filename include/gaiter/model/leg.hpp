@@ -25,6 +25,10 @@ struct Segment {
   double lower_radius = 0;  // undeformed, at the end nearer the ankle [m]
   double upper_radius = 0;  // undeformed, at the end nearer the knee [m]
   Compliance compliance;
+  struct {
+    double lower_radius = 0, upper_radius = 0;
+    Compliance compliance;
+  } given{};  // before the leg's scales, which Leg::scale applies; nothing else looks at it
 
   double mean_radius() const { return 0.5 * (lower_radius + upper_radius); }  // [m]
 };
@@ -38,6 +42,19 @@ struct Leg {
   double young_modulus = 80e3;  // neo-Hookean leg [Pa]
   double poisson_ratio = 0.4;   // neo-Hookean leg [1]
   double shear_modulus = 10e3;  // of the compliance material, in finite elements only [Pa]
+  double radius_scale = 1;      // of all segments' given radii [1]
+  double compliance_scale = 1;  // of the strains of all segments' given compliance [1]
+
+  // Radii and compliance of all segments from what is given and the scales.
+  void scale() {
+    for (Segment& segment : segments) {
+      segment.lower_radius = radius_scale * segment.given.lower_radius;
+      segment.upper_radius = radius_scale * segment.given.upper_radius;
+      segment.compliance = segment.given.compliance;
+      segment.compliance.a *= compliance_scale;
+      segment.compliance.c *= compliance_scale;
+    }
+  }
 };
 
 }  // namespace gaiter::model

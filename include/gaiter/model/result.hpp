@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-2-Clause
 #pragma once
 
+#include <cstddef>
+#include <limits>
+
 #include "gaiter/model/scene.hpp"
 
 namespace gaiter::model {
@@ -13,12 +16,14 @@ enum class Status : signed char {
   extrapolated,    // pressure beyond the compliance data
   pulled_in,       // under voltage the bandage has no equilibrium of its own and none on the leg
   no_equilibrium,  // none exists in the admissible range of radii
-  diverged         // the solver gave up; the numbers are NaN
+  diverged,        // the solver gave up; the numbers are NaN
+  invalid          // not solved: the values of this design of a sweep make no possible scene
 };
+constexpr std::size_t status_count = static_cast<std::size_t>(Status::invalid) + 1;
 
 // True where the numbers of a result can be used (pulled_in: the pressure is 0, as computed).
 constexpr bool trustworthy(Status status) {
-  return status != Status::no_equilibrium && status != Status::diverged;
+  return status < Status::no_equilibrium;
 }
 
 // What every fidelity reports of one segment of one design. Names as in the archive.
@@ -56,6 +61,16 @@ inline void derive_changes(SegmentResult& result) {
   result.pressure_rest_change = change(result.pressure_rest, result.pressure_rest_rigid);
   result.pressure_actuated_change = change(result.pressure_actuated, result.pressure_actuated_rigid);
   result.actuation_drop = result.pressure_rest - result.pressure_actuated;
+}
+
+// A row of which nothing but the reason is known.
+inline SegmentResult without_numbers(Status status, Fidelity fidelity) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  SegmentResult result{none, none, none, none, none, none, none, none, none, none,
+                       none, none, none, none, none, none, none, none, none};
+  result.status = status;
+  result.fidelity = fidelity;
+  return result;
 }
 
 }  // namespace gaiter::model

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "gaiter/model/scene.hpp"
+#include "gaiter/physics/leg_law.hpp"
 #include "gaiter/physics/quadrature.hpp"
 #include "gaiter/physics/vector_math.hpp"
 
@@ -55,7 +57,11 @@ Wall reference_wall(const model::Bandage& bandage, const model::Module& module, 
 // leg (1/b of the strain law; K + G/3 of the neo-Hookean leg).
 class SliceSystem {
  public:
+  SliceSystem() = default;
   SliceSystem(SliceShape shape, std::size_t slices);
+
+  // Makes it as new, in the memory it has.
+  void reset(SliceShape shape, std::size_t slices);
 
   const SliceShape& shape() const { return shape_; }
   std::size_t slices() const { return slices_; }
@@ -68,12 +74,20 @@ class SliceSystem {
            const model::Bandage& bandage, const Wall& wall, double leg_radius, double voltage,
            const Quadrature* wall_rule = nullptr);
 
+  // Constants of the slices `first`, `first` + 1, ... of one segment, at heights from 0 to 1. The same as
+  // set() for each of them, but what they have in common is worked out once. `radii` take the leg's radius at
+  // each. `wall_rule` as above.
+  void set_segment(std::size_t first, std::span<const double> heights, const model::Leg& leg,
+                   const model::Segment& segment, const model::Bandage& bandage, const model::Module& module,
+                   const Quadrature& wall_rule, std::span<double> radii);
+
   // With the voltage on, or off as if there were none (the rest state).
   void energise(bool on) { shape_.layers = on ? layers_ : 0; }
 
   // A system of `packs() == 1` whose slices all have the constants of slice `index` of this one.
   SliceSystem replicate(std::size_t index) const;
 
+  std::size_t rows_per_pack() const { return rows_per_pack_; }
   const Pack* pack(std::size_t index) const { return rows_.data() + index * rows_per_pack_; }
   double constant(std::size_t slice, int row) const {
     return pack(slice / pack_width)[row][slice % pack_width];
@@ -84,9 +98,15 @@ class SliceSystem {
     return rows_[slice / pack_width * rows_per_pack_ + row][slice % pack_width];
   }
 
+  void set_slice(std::size_t index, const model::Leg& leg, const LegConstants& constants, const Wall& wall,
+                 double leg_radius);
+  void set_common(std::size_t first, std::size_t count, const LegConstants& constants,
+                  const model::Bandage& bandage, const Wall& wall, double voltage, const Quadrature& rule);
+  void repeat_last(std::size_t end);
+
   SliceShape shape_;
-  int layers_;
-  std::size_t slices_, packs_, rows_per_pack_;
+  int layers_ = 0;
+  std::size_t slices_ = 0, packs_ = 0, rows_per_pack_ = 0;
   std::vector<Pack> rows_;
 };
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "gaiter/model/scene.hpp"
-#include "gaiter/petsc/handle.hpp"
 #include "gaiter/physics/slice_newton.hpp"
+#include "gaiter/solvers/batch_solver.hpp"
 
 namespace gaiter::solvers {
 
@@ -17,20 +17,19 @@ struct SliceReport {
 };
 
 // The equilibria of many slices as one SNES over a distributed Vec with blocks (strain, pressure), a slice a
-// block. Newton's direction comes from the KSP; a shell line search takes it slice by slice: damping is
-// decided in each block, a converged block stops moving, and the solve ends when no block is open. So a hard
-// slice neither slows nor spoils its neighbours, and the answer does not depend on the number of ranks.
+// block. Slices that have converged leave: once most of those in the packs at hand have, the rest are
+// gathered into packs of their own, so that a hard slice costs only itself.
 //
 // Options (prefix slice_): -slice_snes_rtol is the relative error of a slice's pressure at which it closes,
 // -slice_snes_max_it bounds the steps; -slice_mat_type shell (default: the blocks are inverted as stored) or
 // baij (an assembled matrix, by default with point-block Jacobi); every option of SNES, KSP and PC, other
 // line searches and SNES types among them, which then damp globally.
-class SliceSolver {
+class SliceSolver : public BatchSolver {
  public:
   // @note Collective. `packs`: most packs of 64 slices that this rank will ever hand to solve().
   SliceSolver(MPI_Comm comm, std::size_t packs, model::SliceSolver algorithm, double fixed_point_tolerance);
-  SliceSolver(const SliceSolver&) = delete;
-  SliceSolver& operator=(const SliceSolver&) = delete;
+
+  std::size_t packs() const { return packs_; }
 
   // Sets the iterate of one pack.
   using Start = std::function<void(std::size_t pack)>;
@@ -42,42 +41,45 @@ class SliceSolver {
       const physics::SliceSystem& system, std::vector<physics::PackState>& states,
       const Start& start = [](std::size_t) {});
 
-  SNES snes() const { return snes_.get(); }
-
  private:
-  // Sums over this rank's slices, then over all ranks.
-  struct Totals {
-    double open = 0, residual_square = 0, step_square = 0;
+  // A pack that is worked on: one of the system, or slices gathered from several.
+  struct Work {
+    const physics::Pack* rows;
+    physics::PackState* state;
+    std::size_t first;        // its first slice, where the slices are neighbours in the system
+    const std::size_t* from;  // else where each of them comes from; null: neighbours
+    int count;                // slices; beyond them it repeats the last one
+
+    std::size_t slice(int i) const { return from ? from[i] : first + static_cast<std::size_t>(i); }
+  };
+  struct Gathered {
+    std::vector<physics::Pack> rows;
+    std::vector<physics::PackState> states;
+    std::vector<std::size_t> from;  // empty: none are gathered
+    std::size_t count = 0;          // without the spare places of the last pack
   };
 
-  static PetscErrorCode form_function(SNES snes, Vec x, Vec f, void* context);
-  static PetscErrorCode form_jacobian(SNES snes, Vec x, Mat jacobian, Mat preconditioner, void* context);
-  static PetscErrorCode multiply(Mat jacobian, Vec x, Vec y);
-  static PetscErrorCode invert(PC preconditioner, Vec x, Vec y);
-  static PetscErrorCode advance(SNESLineSearch search, void* context);
-  static PetscErrorCode converged(SNES snes, PetscInt iteration, PetscReal x_norm, PetscReal step_norm,
-                                  PetscReal residual_norm, SNESConvergedReason* reason, void* context);
-
-  PetscErrorCode create(MPI_Comm comm, std::size_t packs);
-  PetscErrorCode create_matrix(MPI_Comm comm, PetscInt rows);
+  PetscErrorCode create(MPI_Comm comm);
+  PetscErrorCode create_matrix(MPI_Comm comm);
   PetscErrorCode run(const Start& start, SliceReport& report);
-  PetscErrorCode evaluate(Vec x, Vec f);
-  PetscErrorCode close_where_converged(SNES snes);
-  PetscErrorCode add_over_ranks(Totals& totals) const;
+  void gather_open();
+  void put_back();
 
+  PetscErrorCode evaluate(Vec x, Vec f, bool& admissible) override;
+  PetscErrorCode assemble(Mat jacobian) override;
+  void multiply(const PetscScalar* in, PetscScalar* out) override;
+  void invert(const PetscScalar* in, PetscScalar* out) override;
+  void step(const PetscScalar* direction, PetscScalar* iterate, PetscScalar* residual,
+            Totals& totals) override;
+  void close_small_steps(Totals& totals) override;
+
+  std::size_t packs_;
   bool newton_;
   double fixed_point_tolerance_;
-  petsc::Vector solution_, residual_;
-  petsc::Matrix jacobian_;
-  petsc::Snes snes_;
-  bool assembled_ = false;
-
   const physics::SliceSystem* system_ = nullptr;
   std::vector<physics::PackState>* states_ = nullptr;
-  double tolerance_ = 0;    // relative, of the pressure
-  double open_ = 0;         // slices, over all ranks
-  bool blockwise_ = false;  // the last step was taken by advance()
-  bool current_ = false;    // the states' residuals and slopes are those of the solution Vec
+  std::vector<Work> work_;  // packs with open slices
+  Gathered gathered_;
 };
 
 }  // namespace gaiter::solvers

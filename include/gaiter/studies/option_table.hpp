@@ -15,6 +15,8 @@ namespace gaiter::studies {
 enum class Command { solve, sweep };
 enum class Comparison { none, paper };  // paper: the paper's printed results beside the computed ones
 
+enum class Progress { automatic, line, log, off };  // how a sweep tells how far it is
+
 // How an option's text is read. Every kind but text becomes numbers: a choice its position in the list, a
 // flag 0 or 1.
 enum class Kind { quantity, count, choice, flag, text };
@@ -83,7 +85,10 @@ struct Option {
   }
 };
 
-// Sorted by name. PETSc's own options (slice_snes_..., slice_ksp_...) are not in it.
+// Those that belong to the program and not to a scene, in any order.
+std::vector<Option> program_options();
+
+// All options, sorted by name. PETSc's own options (slice_snes_..., slice_ksp_...) are not in it.
 std::span<const Option> option_table();
 
 // The option of exactly this name or pattern; it must exist.
@@ -91,5 +96,9 @@ const Option& option(std::string_view name);
 
 // The name of an option for one segment: leg_<s>_radius, r6 -> leg_r6_radius. Other names stay as they are.
 std::string name_for(const Option& option, std::string_view segment);
+
+// What follows the name of an option of several numbers where one of them is swept: the number's label, or
+// its place, counted from 1. leg_r6_radius -> leg_r6_radius_lower; bandage_ogden_mu -> bandage_ogden_mu_2.
+std::string component_name(const Option& option, std::size_t component);
 
 }  // namespace gaiter::studies

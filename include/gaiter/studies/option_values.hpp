@@ -19,8 +19,9 @@ base::InputError value_error(const Option& option, std::string_view name, std::s
 // Throws InputError. Not for options of kind text.
 std::vector<double> parse_values(const Option& option, std::string_view name, std::string_view text);
 
-// The values a sweep gives to an option of one number: a list of any length, each within the option's range.
-std::vector<double> parse_sweep_values(const Option& option, std::string_view name, std::string_view text);
+// Values for one component of an option: a list of any length, each within the component's range.
+std::vector<double> parse_component_list(const Option& option, std::size_t component, std::string_view name,
+                                         std::string_view text);
 
 // Text that parse_values reads as exactly these numbers, in SI with units. A list has YAML's brackets.
 std::string format_values(const Option& option, std::span<const double> values);
@@ -30,5 +31,8 @@ std::string format_number(const Option& option, double value, std::size_t compon
 
 // What may follow "must be": "at least 1e-10 m and at most 1 m".
 std::string allowed(const Option& option);
+
+// Of one of its numbers.
+std::string allowed(const Option& option, std::size_t component);
 
 }  // namespace gaiter::studies

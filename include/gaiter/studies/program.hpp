@@ -6,11 +6,12 @@
 
 namespace gaiter::studies {
 
-// Exit codes of the program.
+// Exit codes of the program. A sweep that a signal has ended gives 128 plus the signal's number, as shells
+// do.
 enum ExitCode { success = 0, wrong_input = 2, untrustworthy = 3, internal_failure = 70 };
 
 // Runs one command on all ranks, prints on rank 0 and writes the archive. Throws base::InputError before
 // anything is written, and base::InternalError. @note Collective; the session outlives the call.
-ExitCode run_program(petsc::Session& session, const CommandLine& line);
+int run_program(petsc::Session& session, const CommandLine& line);
 
 }  // namespace gaiter::studies

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-2-Clause
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 
@@ -12,8 +13,7 @@ namespace gaiter::studies {
 // contact, on fields beyond the breakdown field, and on estimated errors above one per mille.
 std::string result_table(const model::Scene& scene, std::span<const model::SegmentResult> results);
 
-// How many rows of a sweep have which status, and how to list those without a trustworthy result.
-std::string status_summary(std::span<const double> counts, std::size_t designs, double seconds,
-                           const std::string& archive);
+// How many rows of an archive have which status, and how to list those without a trustworthy result.
+std::string status_summary(std::span<const std::int64_t> counts, const std::string& archive);
 
 }  // namespace gaiter::studies

@@ -14,22 +14,22 @@ namespace gaiter::studies {
 
 // What the user asks for, read from the options and checked.
 struct Request {
-  model::Scene scene;       // of a sweep: its first design
-  std::string output;       // file name of the archive
+  model::Scene scene;                         // of a sweep: its first design
+  std::string output;                         // file name of the archive
+  std::vector<std::string> output_variables;  // of the results, in the schema's order; empty: all
   std::string axisym_view;  // file name from which those of the finite element fields are made; empty: none
   bool dry_run = false;
   Comparison comparison = Comparison::none;
-  std::vector<SweepAxis> axes;       // sorted by name; empty for solve
+  Progress progress = Progress::automatic;
+  std::vector<SweepAxis> axes;  // sorted by name; empty for solve
+  Sampling sampling;
   std::vector<std::string> unknown;  // given, but not ours: PETSc's, or misspelt
-  std::string text;  // YAML that, read as -options_file, gives this request again; without output and dry_run
+  std::string text;  // YAML that, read as -options_file, gives this request again; without output, dry_run
+                     // and progress
 };
 
 // Reads the options given, name without dash -> text. Throws InputError; unknown names alone are returned,
 // since some of them are PETSc's. Names do not depend on case, as PETSc's do not. The same on every rank.
 Request parse_request(Command command, const std::map<std::string, std::string>& given);
-
-// What relates several values of one scene: wall against reference radius, positive shear modulus,
-// compliance. Throws InputError that names the option and the values.
-void check_scene(const model::Scene& scene);
 
 }  // namespace gaiter::studies

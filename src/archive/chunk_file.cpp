@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-2-Clause
+#include "gaiter/archive/chunk_file.hpp"
+
+#include <zlib.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+
+#include "gaiter/archive/durable_file.hpp"
+#include "gaiter/archive/table_file.hpp"
+#include "gaiter/base/error.hpp"
+
+namespace gaiter::archive {
+namespace {
+
+constexpr char mark[8] = {'g', 'a', 'i', 't', 'e', 'r', ' ', '1'};
+
+uLong checked(uLong check, const std::byte* bytes, std::size_t count) {
+  return crc32_z(check, reinterpret_cast<const Bytef*>(bytes), count);
+}
+
+}  // namespace
+
+FileOfCases::FileOfCases(const Layout& layout, const Provenance& provenance, const CaseRange& range,
+                         const CaseResults& results, bool newest_format)
+    : file_(newest_format) {
+  const QuietErrors quiet;
+  require_complete(layout, range.count, results);
+  {
+    const std::vector<Id> made = fill_file(file_.get(), layout, provenance, range);
+    const std::vector<FileVariable> variables = variables_of(layout);
+    Compressor compressor;
+    std::vector<std::byte> values;
+    for (std::size_t i = 0; i < variables.size(); ++i) {
+      const std::size_t item = bytes_of(variables[i].stored);
+      values.assign(range.chunk * item * (variables[i].per_segment ? layout.segments.size() : 1),
+                    std::byte{0});
+      gather(variables[i], results, values.data());
+      put_chunk(made[i].get(), 0, compressor.compress(values, item));
+    }
+  }
+  bytes_ = file_.close();
+}
+
+void write_archive(const std::string& path, const Layout& layout, const Provenance& provenance,
+                   const CaseResults& results) {
+  try {
+    const CaseRange all{0, layout.cases, layout.cases};
+    const FileOfCases file(layout, provenance, all, results, false);
+    write_durably(path, temporary_name(path), {file.bytes()});
+  } catch (const std::exception& error) {
+    throw base::InternalError("-output " + path + ": " + error.what());
+  }
+}
+
+Seal seal_of(std::uint64_t sweep, std::span<const std::byte> bytes) {
+  Seal seal{};
+  std::memcpy(seal.mark, mark, sizeof mark);
+  seal.sweep = sweep;
+  seal.bytes = bytes.size();
+  seal.check = checked(crc32_z(0, nullptr, 0), bytes.data(), bytes.size());
+  return seal;
+}
+
+ChunkState examine_chunk(const std::string& path, std::uint64_t sweep) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
+  if (!file) {
+    if (errno == ENOENT) {
+      return ChunkState::missing;
+    }
+    throw base::InternalError("cannot open " + path + ": " + std::strerror(errno));
+  }
+  // The last bytes of the file are looked at as they come by.
+  std::vector<std::byte> buffer(std::size_t{1} << 20);
+  std::vector<std::byte> tail;
+  uLong check = crc32_z(0, nullptr, 0);
+  std::uint64_t bytes = 0;
+  while (const std::size_t got = std::fread(buffer.data(), 1, buffer.size(), file.get())) {
+    tail.insert(tail.end(), buffer.begin(), buffer.begin() + static_cast<std::ptrdiff_t>(got));
+    if (tail.size() > sizeof(Seal)) {
+      const std::size_t passed = tail.size() - sizeof(Seal);
+      check = checked(check, tail.data(), passed);
+      bytes += passed;
+      tail.erase(tail.begin(), tail.begin() + static_cast<std::ptrdiff_t>(passed));
+    }
+  }
+  if (std::ferror(file.get()) != 0) {
+    throw base::InternalError("cannot read " + path + ": " + std::strerror(errno));
+  }
+  if (tail.size() < sizeof(Seal)) {
+    return ChunkState::damaged;
+  }
+  Seal seal;
+  std::memcpy(&seal, tail.data(), sizeof seal);
+  if (std::memcmp(seal.mark, mark, sizeof mark) != 0 || seal.bytes != bytes || seal.check != check) {
+    return ChunkState::damaged;
+  }
+  return seal.sweep == sweep ? ChunkState::sound : ChunkState::foreign;
+}
+
+}  // namespace gaiter::archive

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-2-Clause
+#include "gaiter/studies/scene_checks.hpp"
+
+#include <fmt/format.h>
+
+#include <numbers>
+
+#include "gaiter/base/error.hpp"
+#include "gaiter/studies/axisym_checks.hpp"
+#include "gaiter/studies/option_values.hpp"
+
+namespace gaiter::studies {
+
+using base::InputError;
+
+std::string put_design(const Designs& designs, std::int64_t design, model::Scene& scene) {
+  std::vector<double> values(designs.axes().size());
+  designs.values(design, values);
+  return put_design(designs, values, scene);
+}
+
+std::string put_design(const Designs& designs, std::span<const double> values, model::Scene& scene) {
+  const int refused = designs.apply(values, scene);
+  if (refused >= 0) {
+    const auto place = static_cast<std::size_t>(refused);
+    const SweepAxis& axis = designs.axes()[place];
+    return fmt::format("-{} '{}': must be {}", axis.name,
+                       format_number(*axis.option, values[place], axis.component),
+                       allowed(*axis.option, axis.component));
+  }
+  try {
+    check_scene(scene);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+void check_scene(const model::Scene& scene) {
+  const model::Bandage& bandage = scene.bandage;
+  for (std::size_t i = 0; i < bandage.modules.size(); ++i) {
+    const model::Module& module = bandage.modules[i];
+    const model::Segment& segment = scene.leg.segments[i];
+    const double radius =
+        module.length > 0 ? module.length / (2 * std::numbers::pi) : segment.mean_radius() / module.stretch;
+    // The hole's radius: the reference radius less the part of the wall inside it.
+    const double inside = bandage.length_at == model::LengthAt::outer    ? bandage.thickness
+                          : bandage.length_at == model::LengthAt::middle ? 0.5 * bandage.thickness
+                                                                         : 0;
+    if (inside >= radius) {
+      const std::string size = module.length > 0 ? fmt::format("length {} m", module.length)
+                                                 : fmt::format("stretch {}", module.stretch);
+      throw InputError(
+          fmt::format("-bandage_thickness '{} m': the module on {} ({}) has a reference radius of {:.6g} m, "
+                      "so the wall must be less than {:.6g} m",
+                      bandage.thickness, segment.name, size, radius, radius * bandage.thickness / inside));
+    }
+    const model::Compliance& law = segment.compliance;
+    if (law.a + law.c <= -1) {
+      throw InputError(
+          fmt::format("-leg_{}_compliance '{}, {} Pa-1, {}, {} Pa-1': a + c must be greater than -1",
+                      segment.name, law.a, law.b, law.c, law.d));
+    }
+  }
+  double twice_modulus = 0;
+  for (const model::OgdenTerm& term : bandage.ogden) twice_modulus += term.mu * term.alpha;
+  if (!(twice_modulus > 0)) {
+    std::vector<double> mu, alpha;
+    for (const model::OgdenTerm& term : bandage.ogden) {
+      mu.push_back(term.mu);
+      alpha.push_back(term.alpha);
+    }
+    throw InputError(
+        fmt::format("-bandage_ogden_mu '{}' with -bandage_ogden_alpha '{}': the initial shear modulus, half "
+                    "the sum of mu alpha, is {:.6g} Pa; it must be greater than 0 Pa",
+                    format_values(option("bandage_ogden_mu"), mu),
+                    format_values(option("bandage_ogden_alpha"), alpha), 0.5 * twice_modulus));
+  }
+  if (scene.fidelity == model::Fidelity::axisym) check_axisym(scene);
+}
+
+}  // namespace gaiter::studies

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: BSD-2-Clause
+#include "gaiter/studies/sweep.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "gaiter/archive/sweep_archive.hpp"
+#include "gaiter/petsc/session.hpp"
+#include "gaiter/studies/chunk_solver.hpp"
+#include "gaiter/studies/progress.hpp"
+#include "gaiter/studies/rank_groups.hpp"
+#include "gaiter/studies/stop_signal.hpp"
+#include "gaiter/studies/work_queue.hpp"
+
+namespace gaiter::studies {
+
+namespace {
+
+constexpr double report_interval = 0.5;  // [s], so that 10,000 ranks do not flood the first
+
+archive::Layout layout_of(const Request& request, const Designs& designs) {
+  archive::Layout layout{static_cast<std::size_t>(designs.size()), {}, {}, request.output_variables};
+  for (const model::Segment& segment : request.scene.leg.segments) layout.segments.push_back(segment.name);
+  for (const SweepAxis& axis : designs.axes())
+    layout.swept.push_back({axis.name, std::string(axis.unit()), std::string(axis.option->doc)});
+  return layout;
+}
+
+// The chunks that are left to do, by this rank's group as long as there are any.
+class SweepRun {
+ public:
+  SweepRun(MPI_Comm comm, const Request& request, const Designs& designs, archive::SweepArchive& archive);
+  SweepReport run();
+
+ private:
+  std::int64_t next_chunk();
+  void store(std::size_t chunk, const SolvedChunk& solved);
+  void tell();
+
+  MPI_Comm comm_;
+  archive::SweepArchive& archive_;
+  std::vector<std::size_t> chunks_;  // to do
+  SweepReport report_;
+  RankGroups groups_;
+  ChunkSolver solver_;
+  std::optional<WorkQueue> queue_;
+  StopSignal signal_;
+  std::optional<ProgressReport> progress_;  // on rank 0
+  WorkQueue::Done untold_;
+  double told_ = MPI_Wtime();
+};
+
+SweepRun::SweepRun(MPI_Comm comm, const Request& request, const Designs& designs,
+                   archive::SweepArchive& archive)
+    : comm_(comm),
+      archive_(archive),
+      groups_(comm,
+              request.scene.fidelity == model::Fidelity::axisym ? request.scene.axisym.ranks_per_case : 1),
+      solver_(groups_.group, request.scene, designs) {
+  for (std::size_t chunk = 0; chunk < archive.chunks(); ++chunk) {
+    if (!archive.finished(chunk)) {
+      chunks_.push_back(chunk);
+      report_.missing += static_cast<std::int64_t>(archive.cases_in(chunk));
+    }
+  }
+  report_.taken_up = designs.size() - report_.missing;
+  // Slices all cost about the same. The others may differ tenfold.
+  const bool even =
+      request.scene.fidelity == model::Fidelity::slice || request.scene.fidelity == model::Fidelity::rigid;
+  queue_.emplace(comm, static_cast<std::int64_t>(chunks_.size()),
+                 even ? WorkQueue::Order::in_turn : WorkQueue::Order::on_demand, groups_.mine, groups_.count);
+  if (petsc::rank(comm) == 0 && request.progress != Progress::off)
+    progress_.emplace(request.progress, designs.size(), report_.taken_up);
+}
+
+// The group's next chunk; -1: none is left, or all are to stop.
+std::int64_t SweepRun::next_chunk() {
+  if (const int signal = signal_.received()) queue_->stop(signal);
+  std::int64_t item = -1;
+  if (petsc::rank(groups_.group) == 0 && queue_->stopped() == 0) item = queue_->next();
+  MPI_Bcast(&item, 1, MPI_INT64_T, 0, groups_.group);
+  return item < 0 ? -1 : static_cast<std::int64_t>(chunks_[static_cast<std::size_t>(item)]);
+}
+
+void SweepRun::store(std::size_t chunk, const SolvedChunk& solved) {
+  const double start = MPI_Wtime();
+  archive_.store(chunk, solved.rows, solved.wall_times, solved.swept_values);
+  report_.storing += MPI_Wtime() - start;
+  const auto designs = static_cast<std::int64_t>(solved.wall_times.size());
+  report_.designs += designs;
+  report_.equilibria += solved.equilibria;
+  untold_.designs += designs;
+  untold_.failed += solved.failed;
+  tell();
+}
+
+void SweepRun::tell() {
+  if (MPI_Wtime() - told_ > report_interval) {
+    queue_->report(untold_);
+    untold_ = {};
+    told_ = MPI_Wtime();
+  }
+  if (!progress_ || !progress_->due()) return;
+  const WorkQueue::Done done = queue_->done();
+  progress_->show(done.designs + untold_.designs, done.failed + untold_.failed);
+}
+
+SweepReport SweepRun::run() {
+  const double start = MPI_Wtime();
+  for (std::int64_t chunk = next_chunk(); chunk >= 0; chunk = next_chunk()) {
+    const auto number = static_cast<std::size_t>(chunk);
+    const double before = MPI_Wtime();
+    const SolvedChunk& solved =
+        solver_.solve(static_cast<std::int64_t>(archive_.first_case(number)), archive_.cases_in(number));
+    report_.solving += MPI_Wtime() - before;
+    if (petsc::rank(groups_.group) == 0) store(number, solved);
+  }
+  const double flushing = MPI_Wtime();
+  archive_.flush();
+  report_.storing += MPI_Wtime() - flushing;
+  report_.missing -= static_cast<std::int64_t>(petsc::sum(comm_, static_cast<double>(report_.designs)));
+  report_.signal = static_cast<int>(petsc::largest(comm_, queue_->stopped()));
+  if (report_.missing == 0) report_.signal = 0;
+  if (report_.missing == 0) {
+    const double finishing = MPI_Wtime();
+    archive_.finish();
+    report_.finishing = MPI_Wtime() - finishing;
+  }
+  report_.messages = queue_->messages();
+  report_.seconds = petsc::largest(comm_, MPI_Wtime() - start);
+  return report_;
+}
+
+}  // namespace
+
+std::size_t chunk_designs(const model::Scene& scene, std::int64_t designs) {
+  // An archive takes thousands of chunks, but not hundreds of thousands.
+  constexpr std::int64_t most_chunks = 20000;
+  struct Size {
+    std::int64_t least, most;
+  };
+  const Size size = scene.fidelity == model::Fidelity::axisym    ? Size{1, 1}
+                    : scene.fidelity == model::Fidelity::sliding ? Size{8, 128}
+                                                                 : Size{256, 4096};
+  const std::int64_t some = std::clamp((designs + 15) / 16, size.least, size.most);
+  return static_cast<std::size_t>(std::max(some, (designs + most_chunks - 1) / most_chunks));
+}
+
+SweepReport run_sweep(MPI_Comm comm, const Request& request, const Designs& designs,
+                      archive::Provenance provenance) {
+  archive::SweepArchive archive(comm, request.output, layout_of(request, designs), std::move(provenance),
+                                chunk_designs(request.scene, designs.size()));
+  if (archive.complete()) {
+    SweepReport report;
+    report.taken_up = designs.size();
+    return report;
+  }
+  return SweepRun(comm, request, designs, archive).run();
+}
+
+std::string speed_summary(MPI_Comm comm, const SweepReport& report) {
+  enum Sum { designs, equilibria, solving, storing, finishing, messages, sums };
+  std::array<double, sums> mine{static_cast<double>(report.designs),
+                                report.equilibria,
+                                report.solving,
+                                report.storing,
+                                report.finishing,
+                                static_cast<double>(report.messages)};
+  std::array<double, sums> all{};
+  MPI_Reduce(mine.data(), all.data(), sums, MPI_DOUBLE, MPI_SUM, 0, comm);
+  const double busy = report.solving + report.storing, ranks = petsc::size(comm);
+  const double most_busy = petsc::largest(comm, busy), least_busy = -petsc::largest(comm, -busy);
+  if (all[designs] == 0) return "";
+  std::string text = fmt::format("{:.0f} designs in {:.3g} s on {:.0f} ranks: {:.3g} designs/s a rank",
+                                 all[designs], report.seconds, ranks, all[designs] / report.seconds / ranks);
+  if (all[equilibria] > 0)
+    text += fmt::format(", {:.3g} equilibria/s a rank", all[equilibria] / report.seconds / ranks);
+  const double mean_busy = (all[solving] + all[storing]) / ranks;
+  text += fmt::format(
+      "\n  busy {:.3g} to {:.3g} s, imbalance {:.3f}; archive {:.1f} % of the time; {:.2g} messages a "
+      "design\n",
+      least_busy, most_busy, mean_busy > 0 ? most_busy / mean_busy : 1.0,
+      100 * (all[storing] + all[finishing]) / (ranks * report.seconds), all[messages] / all[designs]);
+  return text;
+}
+
+}  // namespace gaiter::studies
