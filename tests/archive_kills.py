@@ -36,15 +36,7 @@ class Run:
         """The process; under mpiexec also its children, the ranks."""
         if not self.ranks:
             return [self.process.pid]
-        children = []
-        for status in pathlib.Path("/proc").glob("[0-9]*/stat"):
-            try:
-                fields = status.read_text(encoding="utf-8").rsplit(")", 1)[1].split()
-            except (OSError, IndexError):
-                continue  # it has just ended
-            if int(fields[1]) == self.process.pid:
-                children.append(int(status.parent.name))
-        return [self.process.pid, *sorted(children)]
+        return [self.process.pid, *sorted(processes_of(1, self.process.pid))]
 
     def kill_one(self, dice):
         victim = dice.choice(self.victims())
@@ -58,23 +50,30 @@ class Run:
         try:
             self.out, self.err = self.process.communicate(timeout=60)
         finally:
-            try:
-                os.killpg(self.process.pid, signal.SIGKILL)  # ranks that have lost their mpiexec
-            except ProcessLookupError:
-                pass
-        wait_for(lambda: not group_lives(self.process.pid))
+            self.kill_all()  # ranks that have lost their mpiexec
         return self.process.returncode
 
+    def kill_all(self):
+        """Every process of the run, and waits until they are gone. Ranks have process groups of their own."""
+        def living():
+            for pid in processes_of(3, self.process.pid):
+                try:
+                    os.kill(pid, signal.SIGKILL)
+                except ProcessLookupError:
+                    pass
+                yield pid
+        wait_for(lambda: not list(living()))
 
-def group_lives(group):
+
+def processes_of(field, number):
+    """Those that have not ended, chosen by a field of /proc/PID/stat counted from the state: 1 parent, 3 session."""
     for status in pathlib.Path("/proc").glob("[0-9]*/stat"):
         try:
             fields = status.read_text(encoding="utf-8").rsplit(")", 1)[1].split()
         except (OSError, IndexError):
-            continue
-        if int(fields[2]) == group and fields[0] not in "ZX":
-            return True
-    return False
+            continue  # it has just ended
+        if int(fields[field]) == number and fields[0] not in "ZX":
+            yield int(status.parent.name)
 
 
 def wait_for(condition):
@@ -156,7 +155,7 @@ class Kills(unittest.TestCase):
                 self.file.unlink()
 
     def test_killed_while_merging(self):
-        size = {"cases": 20000, "chunk": 50}
+        size = {"cases": 12000, "chunk": 50}
         expected = self.undisturbed(**size)
         for seed, ranks in enumerate([0, 2]):
             dice = random.Random(seed)
@@ -183,7 +182,7 @@ class Kills(unittest.TestCase):
             second = Run(self.folder, ranks=ranks)
             self.assertEqual(second.end(), 2, second.err)
             self.assertIn("-output sweep.h5: another run is writing this archive", second.err)
-        os.killpg(first.process.pid, signal.SIGKILL)
+        first.kill_all()
         first.end()
         self.finish()
         self.assertTrue(self.file.read_bytes() == self.undisturbed())
@@ -277,7 +276,7 @@ class Kills(unittest.TestCase):
         self.finish(preexec_fn=as_nobody)
 
     def test_xarray_opens_it_unfinished_and_finished(self):
-        run = Run(self.folder, ranks=2, pause=30)
+        run = Run(self.folder, ranks=2, pause=500)
         wait_for(lambda: len(list(self.parts.glob("chunk-*.h5"))) >= 5)
         with xarray.open_dataset(self.file, engine="h5netcdf") as data:
             self.assertEqual(dict(data.sizes), {"case": CASES, "segment": 3})
@@ -310,7 +309,7 @@ class Kills(unittest.TestCase):
             return int(out.stdout) * 1024
 
         few, many = peak(4000), peak(400_000)
-        # The results of 400000 cases take 200 MB.
+        # The results of 400000 cases take 200 MB; the windows onto their 200 chunks 20 MB.
         self.assertLess(many - few, 40e6)
 
 

@@ -97,6 +97,27 @@ TEST(Sweep, UnfinishedShowsWhatIsThere) {
   expect_finishes("unfinished.h5", layout);
 }
 
+TEST(Sweep, OfVeryManyChunksShowsNoneUntilItsEnd) {
+  const Layout layout = sample_layout(300);
+  clear("many.h5");
+  {
+    SweepArchive archive(MPI_COMM_WORLD, "many.h5", layout, sample_provenance(), 1);
+    alone([&] {
+      store_sample(archive, 7, 3);
+      const Archive shown = read_archive("many.h5");
+      const auto& status = shown.variables.at("status").numbers;
+      EXPECT_EQ(std::count(status.begin(), status.end(), -1), 900);
+      EXPECT_NE(shown.attributes.at("incomplete").find("too many to show"), std::string::npos);
+      EXPECT_EQ(read_archive("many.h5.parts/chunk-000007.h5").variables.at("case").numbers,
+                std::vector<double>{7});
+    });
+  }
+  const SweepArchive again(MPI_COMM_WORLD, "many.h5", layout, sample_provenance(), 1);
+  EXPECT_TRUE(again.finished(7));
+  EXPECT_FALSE(again.finished(8));
+  clear("many.h5");
+}
+
 TEST(Sweep, CompleteOneIsLeftAlone) {
   const Layout layout = sample_layout(10);
   write_sample(MPI_COMM_WORLD, "complete.h5", layout, chunk_cases);

@@ -25,10 +25,10 @@ struct Unfinished {
 // The attribute by which unfinished files are known.
 inline constexpr const char* incomplete_attribute = "incomplete";
 
-// More chunks than these are not shown before the end of the run: a reader keeps the file of every chunk open
+// More chunks than these are not shown before the end of the run. A reader keeps the file of every chunk open
 // that it has touched, and where its system lets it open no more (often 1024) HDF5 gives out the fill value
-// without a word.
-inline constexpr std::size_t most_parts_shown = 800;
+// without a word; and to make the windows of a chunk takes 0.1 MB.
+inline constexpr std::size_t most_parts_shown = 250;
 
 // Fills a new file with dimensions, variables and attributes for a range of cases. Variables are chunked and
 // compressed and hold nothing yet but the fill value: NaN, for integers -1. Of an unfinished run they
