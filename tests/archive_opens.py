@@ -18,7 +18,7 @@ REALS = {
     "pressure_actuated_rigid": "Pa", "pressure_rest_area_mean": "Pa", "pressure_actuated_area_mean": "Pa",
     "pressure_rest_change": "1", "pressure_actuated_change": "1", "actuation_drop": "Pa", "actuation_pressure": "Pa", "volume_initial": "m3", "volume_rest": "m3",
     "volume_actuated": "m3", "volume_change": "1", "radius_actuated": "m", "stretch_actual": "1", "slip_max": "m",
-    "electric_field_max": "V m-1", "error_estimate": "1",
+    "electric_field_max": "V m-1", "voltage_stable": "V", "error_estimate": "1",
 }
 FLAGS = {
     "status": "contact slack lifted extrapolated pulled_in no_equilibrium diverged invalid",

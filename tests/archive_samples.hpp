@@ -86,7 +86,8 @@ inline SegmentResult sample_row(std::size_t row) {
   result.stretch_actual = 16000 + x;
   result.slip_max = 17000 + x;
   result.electric_field_max = 18000 + x;
-  result.error_estimate = 19000 + x;
+  result.voltage_stable = 19000 + x;
+  result.error_estimate = 20000 + x;
   result.iterations = static_cast<int>(100000 + row);
   result.status = static_cast<model::Status>(row % 7);
   result.fidelity = static_cast<model::Fidelity>(row % 2);
@@ -194,6 +195,7 @@ inline void expect_rows(const Archive& archive, const std::vector<SegmentResult>
   expect("stretch_actual", &SegmentResult::stretch_actual);
   expect("slip_max", &SegmentResult::slip_max);
   expect("electric_field_max", &SegmentResult::electric_field_max);
+  expect("voltage_stable", &SegmentResult::voltage_stable);
   expect("error_estimate", &SegmentResult::error_estimate);
   expect("iterations", &SegmentResult::iterations);
   expect("status", &SegmentResult::status);

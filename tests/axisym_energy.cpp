@@ -81,6 +81,64 @@ TEST(AxisymEnergy, TubesDerivativesAreThoseOfItsValue) {
     }
 }
 
+// A wall on its way to a cone: turned, stretched along, and bulged.
+std::array<double, 5> some_wall(std::mt19937& generator) {
+  std::uniform_real_distribution small(-0.1, 0.1);
+  const double hoop = 1.6 + 5 * small(generator), along = 1 + small(generator);
+  return {1 / (hoop * along), small(generator), small(generator), along, hoop};
+}
+
+TEST(AxisymEnergy, FieldsDerivativesAreThoseOfItsValue) {
+  std::mt19937 generator(4);
+  std::uniform_real_distribution gradient(-30.0, 30.0);
+  constexpr double permittivity = 2e-3;
+  for (int k = 0; k < 40; ++k) {
+    const auto f = some_wall(generator);
+    expect_consistent<8>(
+        [&](const std::array<double, 8>& x) {
+          return electric_energy(permittivity, jets_of<8>(x), Jet<8>::variable(x[6], 6),
+                                 Jet<8>::variable(x[7], 7));
+        },
+        {f[0], f[1], f[2], f[3], f[4], 1, gradient(generator), gradient(generator)}, generator);
+    for (double R : {0.881, 0.9, 0.929})
+      expect_consistent<6>(
+          [&](const std::array<double, 6>& x) {
+            return closed_form_electric_energy(permittivity, jets_of<6>(x), R, 0.88, 0.93);
+          },
+          {f[0], f[1], f[2], f[3], f[4], 1}, generator);
+  }
+}
+
+TEST(AxisymEnergy, FieldsIsThatOfTheDeformedBody) {
+  std::mt19937 generator(5);
+  for (int k = 0; k < 20; ++k) {
+    const auto [rR, rZ, zR, zZ, t] = some_wall(generator);
+    const double phi_R = 3 + k, phi_Z = 7 - k, in_plane = rR * zZ - rZ * zR;
+    // E = F^{-T} grad phi by Cramer's rule.
+    const double r = (zZ * phi_R - zR * phi_Z) / in_plane, z = (rR * phi_Z - rZ * phi_R) / in_plane;
+    const auto energy = electric_energy(0.3, jets_of<8>({rR, rZ, zR, zZ, t}), Jet<8>::variable(phi_R, 6),
+                                        Jet<8>::variable(phi_Z, 7));
+    EXPECT_NEAR(energy.value, -0.15 * in_plane * t * (r * r + z * z), 1e-12 * std::fabs(energy.value));
+  }
+}
+
+// A cylinder that keeps its volume, stretched along as well: phi = ln(r/a) / ln(b/a).
+TEST(AxisymEnergy, ClosedFormIsThatOfTheCylindersPotential) {
+  constexpr double A = 0.88, B = 0.93;
+  for (double l : {0.9, 1.0, 1.2})
+    for (double a : {1.0, 1.5, 2.0})
+      for (double R : {A, 0.9, B}) {
+        const auto deformed = [&](double at) { return std::sqrt(a * a + (at * at - A * A) / l); };
+        const double r = deformed(R), rR = R / (l * r);
+        const std::array<double, 8> x{rR, 0, 0, l, r / R};
+        const auto closed = closed_form_electric_energy(0.3, jets_of<6>({rR, 0, 0, l, r / R}), R, A, B);
+        const auto exact =
+            electric_energy(0.3, jets_of<8>(x), Jet<8>::variable(rR / (r * std::log(deformed(B) / a)), 6),
+                            Jet<8>::variable(0, 7));
+        EXPECT_NEAR(closed.value, exact.value, 1e-12 * std::fabs(exact.value));
+      }
+}
+
 TEST(AxisymEnergy, LegsDerivativesAreThoseOfItsValue) {
   std::mt19937 generator(2);
   std::uniform_real_distribution small(-0.02, 0.02);

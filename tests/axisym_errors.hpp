@@ -19,14 +19,25 @@ namespace gaiter::axisym {
 // A cylinder's solution, lengths over the leg's radius, stresses over the elastomer's shear modulus.
 struct Exact {
   std::function<double(double)> displacement, pressure;  // radial; pressure field; at reference radius R
+  std::function<double(double)> potential{};             // over the voltage, where the space has one
   double contact = 0;                                    // contact pressure
   double leg_stretch = 1;                                // r/R of the leg
 };
 
-// Relative; the first two in L2 over the tube, then at the worst contact vertex and at the leg's worst node.
+// Relative; the first two in L2 over the tube, then at the worst contact vertex and at the leg's worst node
+// (both absolute where nothing presses), and the potential's in L2.
 struct Errors {
-  double displacement = 0, pressure = 0, contact = 0, leg = 0;
+  double displacement = 0, pressure = 0, contact = 0, leg = 0, potential = 0;
 };
+
+// Of the local Vec of the space's DM.
+template <int P>
+std::size_t local_size(const solvers::AxisymSpace<P>& space) {
+  PetscInt largest = 0;
+  for (const auto& cell : space.cells)
+    for (PetscInt place : cell.local) largest = std::max(largest, place + 1);
+  return static_cast<std::size_t>(largest);
+}
 
 template <int P>
 Errors errors(const solvers::AxisymSpace<P>& space, const std::vector<double>& x, const Exact& exact) {
@@ -40,7 +51,9 @@ Errors errors(const solvers::AxisymSpace<P>& space, const std::vector<double>& x
   };
   const auto at = [&](PetscInt place) { return place < 0 ? 0.0 : x[place]; };
   Errors result;
-  double displacement = 0, pressure = 0;  // squares of the norms
+  double displacement = 0, pressure = 0, potential = 0;  // squares of the norms
+  std::vector<double> fixed(space.cells.empty() ? 0 : local_size<P>(space), 0.0);
+  for (const auto& [place, value] : space.electrodes) fixed[place] = value;
   for (const auto& cell : space.cells) {
     const solvers::AxisymBlock& block = space.mesh.blocks[cell.block];
     if (!block.tube) {
@@ -71,17 +84,29 @@ Errors errors(const solvers::AxisymSpace<P>& space, const std::vector<double>& x
           for (int k = 0; k <= degree; ++k, ++q)
             p += at(cell.global[2 * Element::nodes + q]) * std::legendre(degree - k, 2 * rule.nodes[gx] - 1) *
                  std::legendre(k, 2 * rule.nodes[gy] - 1);
+        if (space.choice.layers) {
+          double phi = -exact.potential(R);
+          potential += weight * phi * phi;
+          for (int a = 0; a < Element::nodes; ++a) {
+            const int unknown = Element::tube_unknowns + a;
+            phi += shape(a % (P + 1), rule.nodes[gx]) * shape(a / (P + 1), rule.nodes[gy]) *
+                   (cell.global[unknown] < 0 ? fixed[cell.local[unknown]] : x[cell.global[unknown]]);
+          }
+          result.potential += weight * phi * phi;
+        }
         result.displacement += weight * (u_r * u_r + u_z * u_z);
         result.pressure += weight * p * p;
       }
   }
   result.displacement = std::sqrt(result.displacement / displacement);
   result.pressure = std::sqrt(result.pressure / pressure);
-  result.leg /= std::fabs(exact.leg_stretch - 1);
+  if (potential > 0) result.potential = std::sqrt(result.potential / potential);
+  if (exact.leg_stretch != 1) result.leg /= std::fabs(exact.leg_stretch - 1);
   const auto& carrier = space.choice.multipliers_on_tube ? space.tubes[0] : space.leg;
   for (const auto& node : carrier.nodes)
     if (node.multiplier >= 0)
-      result.contact = std::max(result.contact, std::fabs(x[node.multiplier] / exact.contact - 1));
+      result.contact = std::max(result.contact, std::fabs(x[node.multiplier] - exact.contact) /
+                                                    (exact.contact != 0 ? exact.contact : 1));
   return result;
 }
 
@@ -120,15 +145,16 @@ inline Orders orders(const std::string& name, const std::vector<Errors>& meshes,
     }
     return fitted_order(size, values);  // of one error or none: NaN
   };
-  const Orders fitted{
-      {order(&Errors::displacement), order(&Errors::pressure), order(&Errors::contact), order(&Errors::leg)},
-      meshes[0]};
-  std::printf("%s\n  mesh  displacement  pressure field  contact pressure  leg\n", name.c_str());
+  const Orders fitted{{order(&Errors::displacement), order(&Errors::pressure), order(&Errors::contact),
+                       order(&Errors::leg), order(&Errors::potential)},
+                      meshes[0]};
+  std::printf("%s\n  mesh  displacement  pressure field  contact pressure       leg  potential\n",
+              name.c_str());
   for (std::size_t k = 0; k < meshes.size(); ++k)
-    std::printf("  %4zu  %12.2e  %14.2e  %16.2e  %8.1e\n", k, meshes[k].displacement, meshes[k].pressure,
-                meshes[k].contact, meshes[k].leg);
-  std::printf("  order %12.2f  %14.2f  %16.2f  %8.2f\n", fitted.displacement, fitted.pressure, fitted.contact,
-              fitted.leg);
+    std::printf("  %4zu  %12.2e  %14.2e  %16.2e  %8.1e  %9.1e\n", k, meshes[k].displacement,
+                meshes[k].pressure, meshes[k].contact, meshes[k].leg, meshes[k].potential);
+  std::printf("  order %12.2f  %14.2f  %16.2f  %8.2f  %9.2f\n", fitted.displacement, fitted.pressure,
+              fitted.contact, fitted.leg, fitted.potential);
   return fitted;
 }
 

@@ -20,6 +20,7 @@ gaiter_axisym_test(axisym_jacobian LABEL jacobian)
 gaiter_axisym_test(axisym_locking LABEL convergence)
 gaiter_axisym_test(axisym_convergence LABEL convergence)
 gaiter_axisym_test(axisym_press_fit LABEL convergence)
+gaiter_axisym_test(axisym_voltage LABEL cross)
 
 add_executable(axisym_fields axisym_fields.cpp session_main.cpp)
 target_link_libraries(axisym_fields PRIVATE gaiter_solvers GTest::gtest)
@@ -46,3 +47,5 @@ foreach(RANKS 1 2)
   gaiter_add_test(axisym_leg_on_${RANKS} LABEL cross RANKS ${RANKS} TIMEOUT 300
                   COMMAND $<TARGET_FILE:axisym_leg>)
 endforeach()
+find_package(LAPACK REQUIRED)
+target_link_libraries(axisym_voltage PRIVATE LAPACK::LAPACK)

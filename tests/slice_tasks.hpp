@@ -14,7 +14,7 @@
 namespace gaiter::tasks {
 
 // All numbers of a result, so that two can be compared bit by bit and sent over ranks.
-constexpr int fields = 22;
+constexpr int fields = 23;
 using Numbers = std::array<double, fields>;
 
 inline Numbers numbers_of(const model::SegmentResult& r) {
@@ -39,7 +39,8 @@ inline Numbers numbers_of(const model::SegmentResult& r) {
           static_cast<double>(r.fidelity),
           r.slip_max,
           r.pressure_rest_change,
-          r.pressure_actuated_change};
+          r.pressure_actuated_change,
+          r.voltage_stable};
 }
 
 inline bool same_bits(const Numbers& a, const Numbers& b) {

@@ -71,6 +71,11 @@ constexpr std::array table{
            &Row::slip_max},
     Column{"electric_field_max", "V m-1", "largest true electric field in the wall of the bandage",
            &Row::electric_field_max},
+    Column{
+        "voltage_stable", "V",
+        "largest voltage reached on the branch of stable states that starts at rest; the module's own where "
+        "the state under voltage was found",
+        &Row::voltage_stable},
     Column{"error_estimate", "1", "estimated relative error of the pressures", &Row::error_estimate},
     Column{"iterations", "1", "iterations of the solver, the most that any slice of the segment took",
            &Row::iterations},

@@ -68,39 +68,41 @@ model::SegmentResult summarise_sliding(const SlidingOutcome& outcome, double hei
   result.volume_initial =
       height * M_PI / 3 *
       (lower_radius * lower_radius + lower_radius * upper_radius + upper_radius * upper_radius);
-  if (!model::trustworthy(result.status)) {
-    constexpr double none = std::numeric_limits<double>::quiet_NaN();
-    result.pressure_rest = result.pressure_actuated = result.pressure_rest_area_mean = none;
-    result.pressure_actuated_area_mean = result.actuation_pressure = none;
-    model::derive_changes(result);
-    result.volume_rest = result.volume_actuated = result.volume_change = result.radius_actuated = none;
-    result.stretch_actual = result.slip_max = result.electric_field_max = result.error_estimate = none;
-    return result;
-  }
+  result.voltage_stable = outcome.voltage_stable;
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  const bool actuated_found = model::trustworthy(result.status);
+  const bool rest_found = actuated_found || std::isfinite(outcome.voltage_stable);
   const auto &rest = outcome.rest, &actuated = outcome.actuated;
-  result.pressure_rest = height_mean_pressure(rest);
-  result.pressure_actuated = height_mean_pressure(actuated);
-  result.pressure_rest_area_mean = area_mean_pressure(rest);
-  result.pressure_actuated_area_mean = area_mean_pressure(actuated);
+  result.pressure_rest = rest_found ? height_mean_pressure(rest) : none;
+  result.pressure_actuated = actuated_found ? height_mean_pressure(actuated) : none;
+  result.pressure_rest_area_mean = rest_found ? area_mean_pressure(rest) : none;
+  result.pressure_actuated_area_mean = actuated_found ? area_mean_pressure(actuated) : none;
   model::derive_changes(result);
-  result.actuation_pressure = height_mean(actuated, [](const auto& s) { return s.actuation_pressure; });
   // Formed from the differences of the radii, which a small change needs.
   const auto loss = [&](const std::vector<SlidingSlice>& slices) {
     return height * M_PI * height_mean(slices, [](const auto& s) {
              return (s.leg_radius_before - s.leg_radius) * (s.leg_radius_before + s.leg_radius);
            });
   };
-  result.volume_rest = result.volume_initial - loss(rest);
+  result.volume_rest = rest_found ? result.volume_initial - loss(rest) : none;
+  result.stretch_actual =
+      rest_found ? height_mean(rest, [](const auto& s) { return s.tube_radius; }) / reference_radius : none;
+  result.error_estimate = rest_found ? wall_error + sliding_error(rest) : none;
+  if (!actuated_found) {
+    result.actuation_pressure = result.volume_actuated = result.volume_change = result.radius_actuated = none;
+    result.slip_max = result.electric_field_max = none;
+    return result;
+  }
+  result.actuation_pressure = height_mean(actuated, [](const auto& s) { return s.actuation_pressure; });
   result.volume_actuated = result.volume_initial - loss(actuated);
   result.volume_change = loss(actuated) / result.volume_initial;
   result.radius_actuated = height_mean(actuated, [](const auto& s) { return s.leg_radius; });
-  result.stretch_actual = height_mean(rest, [](const auto& s) { return s.tube_radius; }) / reference_radius;
   result.slip_max = outcome.slip_max;
   for (const SlidingSlice& slice : actuated)
     result.electric_field_max = std::max(result.electric_field_max, slice.electric_field);
   if (result.status == model::Status::pulled_in)
     result.electric_field_max = std::numeric_limits<double>::quiet_NaN();
-  result.error_estimate = wall_error + std::max(sliding_error(rest), sliding_error(actuated));
+  result.error_estimate = std::max(result.error_estimate, wall_error + sliding_error(actuated));
   return result;
 }
 

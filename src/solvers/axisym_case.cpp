@@ -15,7 +15,7 @@ constexpr double vacuum_permittivity = 8.8541878128e-12;  // [F/m]
 constexpr double weakest_spring = 1e-3;  // of the path to the frictionless state, of the shear modulus
 constexpr double strongest_spring = 10;
 constexpr int most_path_steps = 40;
-constexpr double finest_step = 0.01;  // of the path in the square of the voltage, of the full one
+constexpr double finest_step = 0.02;  // of the voltage's square, over where it leads: 1 % of the voltage
 
 bool good(const AxisymReport& report) {
   return report.converged && report.stable;
@@ -98,28 +98,32 @@ std::vector<AxisymSummary> AxisymCase<P>::rest() {
 
 template <int P>
 std::vector<AxisymSummary> AxisymCase<P>::actuated() {
-  if (scene_.axisym.electrostatics == model::Electrostatics::off) return summarise({true}, 0, false);
+  const bool off = scene_.axisym.electrostatics == model::Electrostatics::off;
   int iterations = 0;
-  double reached = 0, step = 1;
-  AxisymReport report;
-  for (int k = 0; reached < 1 && k < most_path_steps && step > finest_step; ++k) {
+  double reached = 0;
+  // Where the path is to lead, last of all to the full voltage. Each target that fails is tried again from
+  // half way to it, and so the last one from close by.
+  std::vector<double> targets;
+  if (!off) targets.push_back(1);
+  for (int k = 0; !targets.empty() && k < most_path_steps; ++k) {
+    const double target = targets.back();
     petsc::check(VecCopy(x_.get(), kept_.get()));
-    const double target = std::min(1.0, reached + step);
     system_->energise(target);
-    report = solver_->solve(x_.get());
+    const AxisymReport report = solver_->solve(x_.get());
     iterations += report.iterations;
     if (good(report)) {
       reached = target;
-    } else {
-      petsc::check(VecCopy(kept_.get(), x_.get()));
-      step *= 0.5;
+      targets.pop_back();
+      continue;
     }
+    petsc::check(VecCopy(kept_.get(), x_.get()));
+    if (target - reached < finest_step * target) break;
+    targets.push_back(0.5 * (reached + target));
   }
   // A path from the state at rest that ends on the way: there the branch of stable states ends.
-  report.converged = reached == 1;
-  report.stable = report.converged;
-  std::vector<AxisymSummary> summaries = summarise(report, iterations, true);
-  for (AxisymSummary& summary : summaries) summary.stable_voltage = std::sqrt(reached);
+  const bool arrived = targets.empty();
+  std::vector<AxisymSummary> summaries = summarise({arrived, arrived}, iterations, !off);
+  for (AxisymSummary& summary : summaries) summary.stable_voltage = off ? NAN : std::sqrt(reached);
   return summaries;
 }
 

@@ -24,6 +24,7 @@ struct Solved {
 struct Piece {
   const model::Scene& scene;
   std::size_t first, last;
+  bool actuated = true;  // whether the state under voltage is wanted
 };
 
 template <int P>
@@ -35,8 +36,9 @@ Solved solve_states(MPI_Comm comm, const Piece& piece, int refine, const AxisymO
   const auto& modules = piece.scene.bandage.modules;
   const bool voltage = std::any_of(modules.begin() + piece.first, modules.begin() + piece.last + 1,
                                    [](const model::Module& module) { return module.voltage != 0; });
-  solved.actuated = voltage && solved.rest[0].converged ? problem.actuated() : solved.rest;
-  if (observer && voltage && solved.actuated[0].converged) problem.show(true, observer);
+  const bool actuate = voltage && piece.actuated && solved.rest[0].converged;
+  solved.actuated = actuate ? problem.actuated() : solved.rest;
+  if (observer && actuate && solved.actuated[0].converged) problem.show(true, observer);
   return solved;
 }
 
@@ -82,22 +84,23 @@ model::SegmentResult result_of(const model::Scene& scene, std::size_t segment, c
   result.pressure_rest_rigid = rigid.pressure_rest_rigid;
   result.pressure_actuated_rigid = rigid.pressure_actuated_rigid;
   result.volume_initial = rigid.volume_initial;
-  const bool good = model::trustworthy(result.status);
-  const auto put = [&](double value) { return good ? value : none; };
+  const auto at_rest = [&](double value) { return rest.converged ? value : none; };
+  const auto put = [&](double value) { return rest.converged && actuated.converged ? value : none; };
   const double volume = length * length * length;
-  result.pressure_rest = put(rest.pressure * unit);
+  result.pressure_rest = at_rest(rest.pressure * unit);
   result.pressure_actuated = put(actuated.pressure * unit);
-  result.pressure_rest_area_mean = put(rest.pressure_area * unit);
+  result.pressure_rest_area_mean = at_rest(rest.pressure_area * unit);
   result.pressure_actuated_area_mean = put(actuated.pressure_area * unit);
   model::derive_changes(result);
   result.actuation_pressure = put(actuated.maxwell * unit);
-  result.volume_rest = put(rest.volume * volume);
+  result.volume_rest = at_rest(rest.volume * volume);
   result.volume_actuated = put(actuated.volume * volume);
   result.volume_change = (result.volume_initial - result.volume_actuated) / result.volume_initial;
   result.radius_actuated = put(actuated.radius * length);
-  result.stretch_actual = put(rest.stretch);
+  result.stretch_actual = at_rest(rest.stretch);
   result.slip_max = put(std::max(rest.slip, actuated.slip) * length);
   result.electric_field_max = put(actuated.field * scene.bandage.modules[segment].voltage / length);
+  result.voltage_stable = at_rest(actuated.stable_voltage * scene.bandage.modules[segment].voltage);
   result.error_estimate = none;
   return result;
 }
@@ -112,14 +115,14 @@ std::vector<model::SegmentResult> solve_piece(MPI_Comm comm, const Piece& piece,
   std::vector<model::SegmentResult> results;
   for (std::size_t k = 0; k < fine.rest.size(); ++k)
     results.push_back(result_of(scene, piece.first + k, fine.rest[k], fine.actuated[k], length, unit));
-  if (!fine.converged() || refine == 0) return results;
-  const Solved coarse = solve_states(comm, piece, refine - 1);
-  if (!coarse.converged()) return results;
+  if (!fine.rest[0].converged || refine == 0) return results;
+  const Solved coarse = solve_states(comm, {scene, piece.first, piece.last, fine.converged()}, refine - 1);
+  if (!coarse.rest[0].converged || (fine.converged() && !coarse.converged())) return results;
   const auto change = [](double a, double b) { return b != 0 ? std::fabs(a / b - 1) : 0; };
   for (std::size_t k = 0; k < results.size(); ++k)
-    if (model::trustworthy(results[k].status))
-      results[k].error_estimate = std::max(change(coarse.rest[k].pressure, fine.rest[k].pressure),
-                                           change(coarse.actuated[k].pressure, fine.actuated[k].pressure));
+    results[k].error_estimate =
+        std::max(change(coarse.rest[k].pressure, fine.rest[k].pressure),
+                 fine.converged() ? change(coarse.actuated[k].pressure, fine.actuated[k].pressure) : 0);
   return results;
 }
 

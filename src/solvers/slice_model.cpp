@@ -183,7 +183,11 @@ std::span<const model::SegmentResult> SliceModel::solve(std::span<const SegmentT
     results_.push_back(physics::summarise(std::span(outcomes_).subspan(own.first, own.end - own.first),
                                           *own.rule, tasks[t].scene->leg.segments[tasks[t].segment].height,
                                           error));
-    results_.back().fidelity = rigid ? model::Fidelity::rigid : model::Fidelity::slice;
+    model::SegmentResult& result = results_.back();
+    result.fidelity = rigid ? model::Fidelity::rigid : model::Fidelity::slice;
+    // A slice's state is that of the branch from rest; where this one ends is not looked for.
+    result.voltage_stable =
+        result.status < Status::pulled_in ? own.voltage : std::numeric_limits<double>::quiet_NaN();
   }
   return results_;
 }

@@ -98,9 +98,10 @@ class SlidingStudy {
   physics::SlidingSystem system_;
   std::vector<SlidingState> states_;
   SlidingSolver solver_;
-  bool energised_ = false;     // somewhere, on any rank
-  bool rigid_leg_ = false;     // nothing but the rigid leg is asked for
-  std::vector<Status> found_;  // of each segment in the states as they are: contact, or why there are none
+  bool energised_ = false;       // somewhere, on any rank
+  bool rigid_leg_ = false;       // nothing but the rigid leg is asked for
+  std::vector<Status> found_;    // of each segment in the states as they are: contact, or why there are none
+  std::vector<double> reached_;  // part of the square of its voltage that each has come to; NaN: not to rest
   std::vector<SlidingOutcome> outcomes_;
 };
 
@@ -111,6 +112,7 @@ SlidingStudy::SlidingStudy(MPI_Comm comm, std::span<const SegmentTask> tasks)
       states_(system_.packs(), SlidingState(system_.shape().slices())),
       solver_(comm, system_.packs(), system_.shape().slices()),
       found_(tasks.size(), Status::contact),
+      reached_(tasks.size()),
       outcomes_(tasks.size()) {
   double voltages = 0, rigid = 0;
   for (std::size_t t = 0; t < tasks_.size(); ++t) {
@@ -224,6 +226,7 @@ void SlidingStudy::walk(bool at_rest) {
     set(t);
     state(t).open[lane(t)] = state(t).failed[lane(t)] = 0;
     set_unknown(t, walk.unknown);
+    if (!at_rest) reached_[t] = walk.done;
     if (walk.done >= 1) continue;
     const int slices = system_.shape().slices();
     const bool lifted = std::all_of(walk.unknown.begin() + slices, walk.unknown.end(),
@@ -278,6 +281,7 @@ void SlidingStudy::record(bool at_rest, bool rigid) {
     if (rigid && !rigid_leg_) continue;
     outcome.status = std::max(outcome.status, found_[t]);
     outcome.iterations = std::max(outcome.iterations, static_cast<int>(state(t).iterations[lane(t)]));
+    if (!at_rest) outcome.voltage_stable = std::sqrt(reached_[t]) * voltage(t);
     const model::Leg& leg = tasks_[t].scene->leg;
     for (std::size_t k = 0; k < slices.size(); ++k) {
       const bool open = slices[k].pressure == 0;
@@ -300,6 +304,8 @@ std::vector<model::SegmentResult> SlidingStudy::run() {
     system_.set_rigid(rigid);
     rest();
     record(true, rigid);
+    for (std::size_t t = 0; t < tasks_.size(); ++t)
+      reached_[t] = found_[t] == Status::contact ? 1 : std::numeric_limits<double>::quiet_NaN();
     if (energised_) actuate();
     record(false, rigid);
   }

@@ -60,6 +60,8 @@ std::string result_table(const model::Scene& scene, std::span<const model::Segme
                         pressure(r.pressure_actuated), r.actuation_drop, r.pressure_rest_rigid / 1000,
                         100 * r.volume_change, r.iterations, archive::word(r.status));
     seen[static_cast<std::size_t>(r.status)] = true;
+    if (r.voltage_stable < scene.bandage.modules[i].voltage)
+      notes += fmt::format("{}: stable up to {:.3g} kV\n", segment.name, r.voltage_stable * 1e-3);
     if (r.electric_field_max > scene.bandage.breakdown_field)
       notes +=
           fmt::format("{}: the electric field, {:.1f} kV/mm, exceeds the breakdown field, {:.1f} kV/mm\n",

@@ -46,8 +46,11 @@ struct SegmentResult {
   double stretch_actual = 0;            // at rest, once the leg has given way, height average [1]
   double slip_max = 0;                  // largest |z - Z| of the tube, at rest or actuated [m]
   double electric_field_max = 0;        // true field, at the inner face of a layer [V/m]
-  double error_estimate = 0;            // relative error of the pressures, estimated [1]
-  int iterations = 0;                   // Newton or fixed-point steps, the most of any slice
+  // Largest voltage reached on the branch of stable states that starts at rest: the module's own where the
+  // actuated state was found, NaN where the model does not follow that branch to its end [V].
+  double voltage_stable = 0;
+  double error_estimate = 0;  // relative error of the pressures, estimated [1]
+  int iterations = 0;         // Newton or fixed-point steps, the most of any slice
   Status status = Status::contact;
   Fidelity fidelity = Fidelity::slice;
 };
@@ -67,7 +70,7 @@ inline void derive_changes(SegmentResult& result) {
 inline SegmentResult without_numbers(Status status, Fidelity fidelity) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   SegmentResult result{none, none, none, none, none, none, none, none, none, none,
-                       none, none, none, none, none, none, none, none, none};
+                       none, none, none, none, none, none, none, none, none, none};
   result.status = status;
   result.fidelity = fidelity;
   return result;

@@ -27,6 +27,7 @@ struct SlidingOutcome {
   double slip_max = 0;                 // [m]
   double pressure_rest_rigid = 0;      // NaN where a leg that does not give way has no result [Pa]
   double pressure_actuated_rigid = 0;  // [Pa]
+  double voltage_stable = 0;           // as in the result; NaN where there is no state at rest [V]
   int iterations = 0;
   model::Status status = model::Status::contact;
 };
