@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "gaiter/physics/quadrature.hpp"
 #include "gaiter/solvers/axisym_system.hpp"
@@ -83,6 +84,23 @@ ContactIntegrals contact_integrals(const solvers::AxisymSystem<P>& system) {
     sum.slip = std::max(sum.slip, std::fabs(tube.height[i] - nodes[i].height));
   for (std::size_t i = 0; i < carrier.active.size(); i += P) sum.open += !carrier.active[i];
   return sum;
+}
+
+// The pressure at current heights over the whole height, linear between the vertices that carry it.
+template <int P>
+std::vector<double> contact_pressures(const solvers::AxisymSystem<P>& system,
+                                      const std::vector<double>& relative_heights) {
+  const auto& carrier = system.space().choice.multipliers_on_tube ? system.tubes()[0] : system.leg();
+  std::vector<double> result;
+  for (double relative : relative_heights) {
+    const double height = relative * system.tubes()[0].height.back();
+    std::size_t above = P;
+    while (above + P < carrier.height.size() && carrier.height[above] < height) above += P;
+    const double below = carrier.height[above - P];
+    const double place = (height - below) / (carrier.height[above] - below);
+    result.push_back((1 - place) * carrier.multiplier[above - P] + place * carrier.multiplier[above]);
+  }
+  return result;
 }
 
 }  // namespace gaiter::axisym

@@ -143,6 +143,7 @@ AxisymSummary summarise_axisym(const model::Scene& scene, std::size_t segment, c
       sum.highest_pressure = std::max(sum.highest_pressure, carrier.multiplier[i]);
   }
   sum.open_everywhere = active == 0;
+  if (sum.open_everywhere) sum.pressure = sum.pressure_area = 0;  // rounding is left in the multipliers
   if (energised) add_actuation(scene.bandage, system, block, face, height, sum);
   return sum;
 }

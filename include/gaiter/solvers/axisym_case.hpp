@@ -41,6 +41,8 @@ class AxisymCase {
   // Hands the fields of the state last found over, on rank 0. @note Collective.
   void show(bool actuated, const AxisymObserver& observer) const;
 
+  const AxisymSystem<P>& system() const { return *system_; }
+
  private:
   // What a simpler model says of a segment at relative heights of the tube's or the leg's surface.
   using Source = std::function<RadialState(std::size_t, std::span<const double>, bool)>;
