@@ -74,9 +74,11 @@ PetscErrorCode AxisymSystem<P>::add_contact(Vec residual, bool& admissible) {
       for (std::size_t vertex : {i, i + P})
         area.back()[vertex] += M_PI * carrier->radius[vertex] * (carrier->height[i + P] - carrier->height[i]);
   }
+  std::vector<std::vector<physics::ContactJet<P>>> potentials(tubes_.size());
   for (std::size_t t = 0; t < tubes_.size(); ++t)
     for (const auto& segment : segments[t]) {
-      const auto potential = segment_potential(static_cast<int>(t), segment, false);
+      const auto& potential =
+          potentials[t].emplace_back(segment_potential(static_cast<int>(t), segment, false));
       const std::size_t c = space_.choice.multipliers_on_tube ? t : 0;
       const int edge = space_.choice.multipliers_on_tube ? segment.tube_edge : segment.leg_edge;
       for (int k = 0; k < 2; ++k) {
@@ -95,13 +97,17 @@ PetscErrorCode AxisymSystem<P>::add_contact(Vec residual, bool& admissible) {
 
   const int rank = petsc::rank(comm_), ranks = petsc::size(comm_);
   for (std::size_t t = 0; t < tubes_.size(); ++t)
-    for (const auto& segment : segments[t]) {
+    for (std::size_t s = 0; s < segments[t].size(); ++s) {
+      const physics::ContactSegment& segment = segments[t][s];
       const int pair = pair_at_[(first_tube_edge_[t] + segment.tube_edge) * leg_edges + segment.leg_edge];
       if (pair % ranks != rank) continue;
-      const auto potential = segment_potential(static_cast<int>(t), segment, true);
       const std::vector<PetscInt> unknowns = unknowns_of(pairs_[pair]);
       const SurfaceState& carrier = space_.choice.multipliers_on_tube ? tubes_[t] : leg_;
       const int edge = space_.choice.multipliers_on_tube ? segment.tube_edge : segment.leg_edge;
+      // Only a multiplier that does not press changes what was worked out for the gaps.
+      if (!carrier.active[P * edge] || !carrier.active[P * (edge + 1)])
+        potentials[t][s] = segment_potential(static_cast<int>(t), segment, true);
+      const physics::ContactJet<P>& potential = potentials[t][s];
       std::array<double, pair_unknowns> forces = potential.gradient;
       const auto silent = [&](int i) {
         return i >= 4 * (P + 1) && !carrier.active[P * (edge + i - 4 * (P + 1))];

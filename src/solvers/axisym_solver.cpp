@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-2-Clause
 #include "gaiter/solvers/axisym_solver.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "gaiter/petsc/check.hpp"
@@ -41,24 +42,26 @@ PetscErrorCode AxisymSolver<P>::create() {
   PetscCall(SNESGetKSP(snes, &ksp));
   PetscCall(linear_.create(system_.space().plex.get(), system_.matrix(), ksp));
   PetscCall(SNESSetFromOptions(snes));
-  PetscCall(SNESGetTolerances(snes, nullptr, nullptr, &step_tolerance_, nullptr, nullptr));
+  PetscCall(SNESGetTolerances(snes, nullptr, nullptr, &step_tolerance_, &most_iterations_, nullptr));
   PetscCall(linear_.prepare());
   pattern_ = system_.pattern();
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 template <int P>
-AxisymReport AxisymSolver<P>::solve(Vec x) {
+AxisymReport AxisymSolver<P>::solve(Vec x, int most) {
   AxisymReport report;
-  petsc::check(run(x, report));
+  petsc::check(run(x, most, report));
   return report;
 }
 
 template <int P>
-PetscErrorCode AxisymSolver<P>::run(Vec x, AxisymReport& report) {
+PetscErrorCode AxisymSolver<P>::run(Vec x, int most, AxisymReport& report) {
   PetscFunctionBegin;
   steps_.clear();
   full_step_ = false;
+  PetscCall(SNESSetTolerances(snes_.get(), PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT,
+                              std::min<PetscInt>(most, most_iterations_), PETSC_DEFAULT));
   PetscCall(SNESSolve(snes_.get(), nullptr, x));
   SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
   PetscInt iterations = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-2-Clause
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "gaiter/solvers/axisym_linear.hpp"
@@ -27,8 +28,9 @@ class AxisymSolver {
   AxisymSolver(const AxisymSolver&) = delete;
   AxisymSolver& operator=(const AxisymSolver&) = delete;
 
-  // From x, to x. Not converged is no error: x is then of no use. @note Collective.
-  AxisymReport solve(Vec x);
+  // From x, to x, in no more than `most` iterations and -axisym_snes_max_it (default 30). Not converged is no
+  // error: x is then of no use. @note Collective.
+  AxisymReport solve(Vec x, int most = std::numeric_limits<int>::max());
 
   // Solves one linear system, with the tangent at x, so that all parts of the solver ask for their options.
   // @note Collective.
@@ -41,7 +43,7 @@ class AxisymSolver {
   static PetscErrorCode converged(SNES snes, PetscInt iteration, PetscReal x_norm, PetscReal step_norm,
                                   PetscReal residual_norm, SNESConvergedReason* reason, void* context);
   PetscErrorCode create();
-  PetscErrorCode run(Vec x, AxisymReport& report);
+  PetscErrorCode run(Vec x, int most, AxisymReport& report);
   PetscErrorCode assemble();
   PetscErrorCode solve_once(Vec x);
 
@@ -51,6 +53,7 @@ class AxisymSolver {
   AxisymLinear linear_;
   int pattern_ = 0;  // of the system, that linear_ is set up for
   double step_tolerance_ = 0;
+  PetscInt most_iterations_ = 0;
   std::vector<double> steps_;  // largest displacement of each step taken, over the leg's radius
   bool full_step_ = false;
 };
