@@ -12,14 +12,28 @@ namespace gaiter::solvers {
 namespace {
 
 constexpr double vacuum_permittivity = 8.8541878128e-12;  // [F/m]
+constexpr int most_path_steps = 40;
 constexpr double weakest_spring = 1e-3;  // of the path to the frictionless state, of the shear modulus
 constexpr double strongest_spring = 10;
-constexpr int most_path_steps = 40;
-constexpr int most_path_iterations = 12;  // of a voltage; half of them do where there is a state
+constexpr double stiffest_leg = 100;  // of the path to the state at rest, times its own stiffness
+constexpr double leg_stride = 0.1, spring_stride = 0.25;  // first factors between two places on these paths
+constexpr double shortest_stride = 0.9;
+constexpr int most_path_iterations = 12;  // Newton's, of a step on a path: one that gets there needs fewer
 constexpr double finest_step = 0.02;  // of the voltage's square, over where it leads: 1 % of the voltage
 
 bool good(const AxisymReport& report) {
   return report.converged && report.stable;
+}
+
+// The same scene on a leg that needs `factor` times the pressure for the same deformation.
+model::Scene with_stiffer_leg(model::Scene scene, double factor) {
+  scene.leg.young_modulus *= factor;
+  scene.leg.shear_modulus *= factor;
+  for (model::Segment& segment : scene.leg.segments) {
+    segment.compliance.b /= factor;
+    segment.compliance.d /= factor;
+  }
+  return scene;
 }
 
 }  // namespace
@@ -82,18 +96,16 @@ AxisymCase<P>::AxisymCase(MPI_Comm comm, const model::Scene& scene, std::size_t 
 
 template <int P>
 void AxisymCase<P>::try_solver() {
-  petsc::check(set_start<P>(*system_, slices(false), x_.get()));
+  petsc::check(set_start<P>(*system_, slices(scene_), x_.get()));
   solver_->try_at(x_.get());
 }
 
 template <int P>
 std::vector<AxisymSummary> AxisymCase<P>::rest() {
   int iterations = 0;
-  std::vector<RadialState> start;
-  AxisymReport report;
-  if (sliding(start)) report = solve_from(start, iterations);
-  if (!good(report)) report = solve_from(slices(false), iterations);
-  if (!good(report)) report = follow_spring(iterations);
+  AxisymReport report = solve_from(scene_, iterations);
+  if (!good(report)) report = soften_leg(iterations);
+  if (!report.converged && report.stable) report = follow_spring(iterations);
   return summarise(report, iterations, false);
 }
 
@@ -171,72 +183,94 @@ std::vector<RadialState> AxisymCase<P>::states(const Source& source) const {
 }
 
 template <int P>
-std::vector<RadialState> AxisymCase<P>::slices(bool actuated) const {
+std::vector<RadialState> AxisymCase<P>::slices(const model::Scene& scene) const {
   return states([&](std::size_t segment, std::span<const double> heights, bool) {
-    RadialState state = slice_states(scene_, segment, heights, actuated);
-    if (!actuated) open_ends(scene_, segment, state);
+    RadialState state = slice_states(scene, segment, heights, false);
+    open_ends(scene, segment, state);
     return state;
   });
 }
 
-// At rest, segment by segment: the slices' where the sliding ones have no answer. False where none has, or
-// the tubes are held.
+// At rest, segment by segment: the slices' where the tubes are held, and where the sliding ones have no
+// answer.
 template <int P>
-bool AxisymCase<P>::sliding(std::vector<RadialState>& start) const {
-  if (scene_.contact_axial == model::ContactAxial::held) return false;
-  model::Scene at_rest = scene_;
+std::vector<RadialState> AxisymCase<P>::sliding(const model::Scene& scene) const {
+  if (scene.contact_axial == model::ContactAxial::held) return slices(scene);
+  model::Scene at_rest = scene;
   for (model::Module& module : at_rest.bandage.modules) module.voltage = 0;
   std::vector<SlidingProfile> profiles;
-  bool any = false;
   for (std::size_t segment = first_; segment <= last_; ++segment) {
     SlidingSolution solution = solve_sliding({&at_rest, segment});
     const bool found = model::trustworthy(solution.result.status);
     profiles.push_back(found ? std::move(solution.rest) : SlidingProfile());
-    any = any || found;
   }
-  if (!any) return false;
-  start = states([&](std::size_t segment, std::span<const double> heights, bool of_tube) {
+  return states([&](std::size_t segment, std::span<const double> heights, bool of_tube) {
     const SlidingProfile& profile = profiles[segment - first_];
-    RadialState state = profile.height.empty() ? slice_states(scene_, segment, heights, false)
-                                               : sliding_states(scene_, segment, profile, heights, of_tube);
-    open_ends(scene_, segment, state);
+    RadialState state = profile.height.empty() ? slice_states(scene, segment, heights, false)
+                                               : sliding_states(scene, segment, profile, heights, of_tube);
+    open_ends(scene, segment, state);
     return state;
   });
-  return true;
 }
 
+// At rest, on the leg of a scene, from what simpler models say of it.
 template <int P>
-AxisymReport AxisymCase<P>::solve_from(const std::vector<RadialState>& start, int& iterations) {
-  petsc::check(set_start<P>(*system_, start, x_.get()));
+AxisymReport AxisymCase<P>::solve_from(const model::Scene& scene, int& iterations) {
+  system_->set_leg(axisym_materials(scene, first_, last_).leg);
+  petsc::check(set_start<P>(*system_, sliding(scene), x_.get()));
   const AxisymReport report = solver_->solve(x_.get());
   iterations += report.iterations;
+  return report;
+}
+
+// From a leg that hardly gives way, where the start is all but right, to the scene's own.
+template <int P>
+AxisymReport AxisymCase<P>::soften_leg(int& iterations) {
+  double stiffness = stiffest_leg, stride = leg_stride;
+  AxisymReport report = solve_from(with_stiffer_leg(scene_, stiffness), iterations);
+  const bool reached = good(report);
+  for (int k = 0; reached && stiffness > 1 && k < most_path_steps && stride < shortest_stride; ++k) {
+    petsc::check(VecCopy(x_.get(), kept_.get()));
+    const double target = std::max(1.0, stiffness * stride);
+    system_->set_leg(axisym_materials(with_stiffer_leg(scene_, target), first_, last_).leg);
+    report = solver_->solve(x_.get(), most_path_iterations);
+    iterations += report.iterations;
+    if (good(report)) {
+      stiffness = target;
+    } else {
+      petsc::check(VecCopy(kept_.get(), x_.get()));
+      stride = std::sqrt(stride);
+    }
+  }
+  system_->set_leg(axisym_materials(scene_, first_, last_).leg);
+  report.converged = reached && stiffness == 1;
+  report.stable = report.converged || !reached;  // a path that ends on the way: no equilibrium on this leg
   return report;
 }
 
 // From the tube held at its heights, where the slices are all but right, to the free one.
 template <int P>
 AxisymReport AxisymCase<P>::follow_spring(int& iterations) {
-  petsc::check(set_start<P>(*system_, slices(false), x_.get()));
+  petsc::check(set_start<P>(*system_, slices(scene_), x_.get()));
   petsc::check(VecCopy(x_.get(), kept_.get()));
   AxisymReport report;
-  double spring = strongest_spring, last_spring = 0, factor = 0.25;
+  double spring = strongest_spring, last_spring = 0, stride = spring_stride;
   bool released = false, reached = false;
-  for (int k = 0; k < most_path_steps && !released; ++k) {
+  for (int k = 0; k < most_path_steps && !released && stride < shortest_stride; ++k) {
     system_->set_axial_spring(spring);
-    report = solver_->solve(x_.get());
+    report = reached ? solver_->solve(x_.get(), most_path_iterations) : solver_->solve(x_.get());
     iterations += report.iterations;
     if (good(report)) {
       released = spring == 0;
       reached = true;
       petsc::check(VecCopy(x_.get(), kept_.get()));
       last_spring = spring;
-      spring = spring * factor > weakest_spring ? spring * factor : 0;
     } else {
-      if (!reached || factor > 0.98) break;
+      if (!reached) break;
       petsc::check(VecCopy(kept_.get(), x_.get()));
-      factor = std::sqrt(factor);
-      spring = last_spring * factor;
+      stride = std::sqrt(stride);
     }
+    spring = last_spring * stride > weakest_spring ? last_spring * stride : 0;
   }
   system_->set_axial_spring(0);
   report.converged = released;

@@ -32,7 +32,8 @@ class AxisymCase {
 
   void try_solver();  // one linear solve at the start. @note Collective.
   // One summary a segment. Starts from the sliding slices where nothing holds the tubes and these have an
-  // answer, else from the slices; where this fails, on the path of a spring that is let go.
+  // answer, else from the slices; where this fails, on the path from a stiffer leg to the
+  // scene's, or on that of a spring that is let go.
   // @note Collective.
   std::vector<AxisymSummary> rest();
   // From the state at rest, which comes first. @note Collective.
@@ -48,9 +49,10 @@ class AxisymCase {
   using Source = std::function<RadialState(std::size_t, std::span<const double>, bool)>;
 
   std::vector<RadialState> states(const Source& source) const;
-  std::vector<RadialState> slices(bool actuated) const;
-  bool sliding(std::vector<RadialState>& start) const;
-  AxisymReport solve_from(const std::vector<RadialState>& start, int& iterations);
+  std::vector<RadialState> slices(const model::Scene& scene) const;
+  std::vector<RadialState> sliding(const model::Scene& scene) const;
+  AxisymReport solve_from(const model::Scene& scene, int& iterations);
+  AxisymReport soften_leg(int& iterations);
   AxisymReport follow_spring(int& iterations);
   std::vector<AxisymSummary> summarise(const AxisymReport& report, int iterations, bool energised) const;
 

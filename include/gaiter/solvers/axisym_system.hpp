@@ -46,6 +46,9 @@ class AxisymSystem {
     return {energised_, tube.inner[0], tube.outer[0]};
   }
 
+  // Another leg, of as many segments.
+  void set_leg(std::vector<physics::LegMaterialLaw> leg) { materials_.leg = std::move(leg); }
+
   // A spring, per length of the tubes' inner faces, that holds them at their reference height: 0 for the
   // model itself, a path to it where Newton's method needs one. In units of stress.
   void set_axial_spring(double stiffness) { spring_ = stiffness; }
