@@ -19,7 +19,7 @@ constexpr double stiffest_leg = 100;  // of the path to the state at rest, times
 constexpr double leg_stride = 0.1, spring_stride = 0.25;  // first factors between two places on these paths
 constexpr double shortest_stride = 0.9;
 constexpr int most_path_iterations = 12;  // Newton's, of a step on a path: one that gets there needs fewer
-constexpr double finest_step = 0.02;  // of the voltage's square, over where it leads: 1 % of the voltage
+constexpr double finest_step = 0.02;      // of the voltage's square, over where it leads: 1 % of the voltage
 
 bool good(const AxisymReport& report) {
   return report.converged && report.stable;
