@@ -94,7 +94,11 @@ Id make_segment_scale(hid_t file, const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     pointers.push_back(name.c_str());
   }
-  check(H5Dwrite(scale.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, pointers.data()),
+  // By default HDF5 converts texts in two megabytes that it clears first, which takes as long as all else
+  // here.
+  const Id transfer = own(H5Pcreate(H5P_DATASET_XFER), action);
+  check(H5Pset_buffer(transfer.get(), 4096, nullptr, nullptr), action);
+  check(H5Dwrite(scale.get(), type.get(), H5S_ALL, H5S_ALL, transfer.get(), pointers.data()),
         "write variable segment");
   check(H5DSset_scale(scale.get(), "segment"), "make segment a dimension");
   put_text(scale.get(), "long_name", "name of the segment of leg, from the ankle up");

@@ -2,6 +2,7 @@
 #include "gaiter/studies/sweep.hpp"
 
 #include <fmt/format.h>
+#include <time.h>
 
 #include <algorithm>
 #include <array>
@@ -21,6 +22,21 @@ namespace {
 
 constexpr double report_interval = 0.5;  // [s], so that 10,000 ranks do not flood the first
 
+// Time that the processor has given to this thread, or to all threads of the process.
+double processor_seconds(clockid_t clock) {
+  timespec time{};
+  clock_gettime(clock, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+double thread_seconds() {
+  return processor_seconds(CLOCK_THREAD_CPUTIME_ID);
+}
+
+double process_seconds() {
+  return processor_seconds(CLOCK_PROCESS_CPUTIME_ID);
+}
+
 archive::Layout layout_of(const Request& request, const Designs& designs) {
   archive::Layout layout{static_cast<std::size_t>(designs.size()), {}, {}, request.output_variables};
   for (const model::Segment& segment : request.scene.leg.segments) layout.segments.push_back(segment.name);
@@ -37,6 +53,8 @@ class SweepRun {
 
  private:
   std::int64_t next_chunk();
+  void solve(std::int64_t item);
+  void finish();
   void store(std::size_t chunk, const SolvedChunk& solved);
   void tell();
 
@@ -78,7 +96,8 @@ SweepRun::SweepRun(MPI_Comm comm, const Request& request, const Designs& designs
 
 // The group's next chunk; -1: none is left, or all are to stop.
 std::int64_t SweepRun::next_chunk() {
-  if (const int signal = signal_.received()) queue_->stop(signal);
+  // Where all ranks get the signal, as under Slurm, the first to see it tells the others.
+  if (const int signal = signal_.received(); signal > 0 && queue_->stopped() == 0) queue_->stop(signal);
   std::int64_t item = -1;
   if (petsc::rank(groups_.group) == 0 && queue_->stopped() == 0) item = queue_->next();
   MPI_Bcast(&item, 1, MPI_INT64_T, 0, groups_.group);
@@ -108,28 +127,42 @@ void SweepRun::tell() {
   progress_->show(done.designs + untold_.designs, done.failed + untold_.failed);
 }
 
+// One chunk, which a rank of the group stores. The other thread, which writes, is part of the archive's time.
+void SweepRun::solve(std::int64_t item) {
+  const auto chunk = static_cast<std::size_t>(item);
+  const double start = MPI_Wtime(), thread = thread_seconds(), process = process_seconds();
+  const SolvedChunk& solved =
+      solver_.solve(static_cast<std::int64_t>(archive_.first_case(chunk)), archive_.cases_in(chunk));
+  report_.solving += MPI_Wtime() - start;
+  const double solving = thread_seconds() - thread;
+  report_.solving_processor += solving;
+  if (petsc::rank(groups_.group) == 0) store(chunk, solved);
+  report_.archive_processor += process_seconds() - process - solving;
+}
+
+void SweepRun::finish() {
+  const double start = MPI_Wtime(), process = process_seconds();
+  archive_.finish();
+  report_.finishing = MPI_Wtime() - start;
+  if (petsc::rank(comm_) == 0) report_.archive_processor += process_seconds() - process;  // the others wait
+}
+
 SweepReport SweepRun::run() {
   const double start = MPI_Wtime();
-  for (std::int64_t chunk = next_chunk(); chunk >= 0; chunk = next_chunk()) {
-    const auto number = static_cast<std::size_t>(chunk);
-    const double before = MPI_Wtime();
-    const SolvedChunk& solved =
-        solver_.solve(static_cast<std::int64_t>(archive_.first_case(number)), archive_.cases_in(number));
-    report_.solving += MPI_Wtime() - before;
-    if (petsc::rank(groups_.group) == 0) store(number, solved);
-  }
+  for (std::int64_t chunk = next_chunk(); chunk >= 0; chunk = next_chunk()) solve(chunk);
   const double flushing = MPI_Wtime();
   archive_.flush();
-  report_.storing += MPI_Wtime() - flushing;
+  const double flushed = MPI_Wtime();
+  report_.storing += flushed - flushing;
   report_.missing -= static_cast<std::int64_t>(petsc::sum(comm_, static_cast<double>(report_.designs)));
+  report_.waiting_at_the_end = MPI_Wtime() - flushed;
   report_.signal = static_cast<int>(petsc::largest(comm_, queue_->stopped()));
-  if (report_.missing == 0) report_.signal = 0;
   if (report_.missing == 0) {
-    const double finishing = MPI_Wtime();
-    archive_.finish();
-    report_.finishing = MPI_Wtime() - finishing;
+    report_.signal = 0;
+    finish();
   }
   report_.messages = queue_->messages();
+  report_.waiting_for_messages = queue_->waiting();
   report_.seconds = petsc::largest(comm_, MPI_Wtime() - start);
   return report_;
 }
@@ -162,28 +195,50 @@ SweepReport run_sweep(MPI_Comm comm, const Request& request, const Designs& desi
 }
 
 std::string speed_summary(MPI_Comm comm, const SweepReport& report) {
-  enum Sum { designs, equilibria, solving, storing, finishing, messages, sums };
+  enum Sum {
+    designs,
+    equilibria,
+    busy,
+    storing,
+    finishing,
+    solving_processor,
+    archive_processor,
+    messages,
+    waiting,
+    at_the_end,
+    sums
+  };
   std::array<double, sums> mine{static_cast<double>(report.designs),
                                 report.equilibria,
-                                report.solving,
+                                report.solving + report.storing,
                                 report.storing,
                                 report.finishing,
-                                static_cast<double>(report.messages)};
+                                report.solving_processor,
+                                report.archive_processor,
+                                static_cast<double>(report.messages),
+                                report.waiting_for_messages,
+                                report.waiting_at_the_end};
   std::array<double, sums> all{};
   MPI_Reduce(mine.data(), all.data(), sums, MPI_DOUBLE, MPI_SUM, 0, comm);
-  const double busy = report.solving + report.storing, ranks = petsc::size(comm);
-  const double most_busy = petsc::largest(comm, busy), least_busy = -petsc::largest(comm, -busy);
+  const double ranks = petsc::size(comm);
+  const double most_busy = petsc::largest(comm, mine[busy]), least_busy = -petsc::largest(comm, -mine[busy]);
   if (all[designs] == 0) return "";
   std::string text = fmt::format("{:.0f} designs in {:.3g} s on {:.0f} ranks: {:.3g} designs/s a rank",
                                  all[designs], report.seconds, ranks, all[designs] / report.seconds / ranks);
   if (all[equilibria] > 0)
     text += fmt::format(", {:.3g} equilibria/s a rank", all[equilibria] / report.seconds / ranks);
-  const double mean_busy = (all[solving] + all[storing]) / ranks;
+  const double processor = all[solving_processor] + all[archive_processor];
+  text += fmt::format("\n  busy {:.3g} to {:.3g} s, imbalance {:.3f}; archive {:.1f} % of the time\n",
+                      least_busy, most_busy, all[busy] > 0 ? most_busy * ranks / all[busy] : 1.0,
+                      100 * (all[storing] + all[finishing]) / (ranks * report.seconds));
+  text += fmt::format("  processor time {:.4g} s", processor);
+  if (all[equilibria] > 0) text += fmt::format(", {:.3g} equilibria/s of it", all[equilibria] / processor);
+  text += fmt::format("; archive {:.1f} % of it\n", 100 * all[archive_processor] / processor);
   text += fmt::format(
-      "\n  busy {:.3g} to {:.3g} s, imbalance {:.3f}; archive {:.1f} % of the time; {:.2g} messages a "
-      "design\n",
-      least_busy, most_busy, mean_busy > 0 ? most_busy / mean_busy : 1.0,
-      100 * (all[storing] + all[finishing]) / (ranks * report.seconds), all[messages] / all[designs]);
+      "  {:.2g} messages and {:.2g} s of waiting for them a design; at the end {:.2g} s a rank for the "
+      "slowest, "
+      "{:.2g} s for the merge\n",
+      all[messages] / all[designs], all[waiting] / all[designs], all[at_the_end] / ranks, report.finishing);
   return text;
 }
 

@@ -24,9 +24,13 @@ WorkQueue::~WorkQueue() {
 
 std::int64_t WorkQueue::fetch(int rank, Place place, std::int64_t value, MPI_Op operation) {
   std::int64_t before = 0;
+  const double start = MPI_Wtime();
   MPI_Fetch_and_op(&value, &before, MPI_INT64_T, rank, place, operation, window_);
   MPI_Win_flush(rank, window_);
-  messages_ += rank != petsc::rank(comm_);
+  if (rank != petsc::rank(comm_)) {
+    ++messages_;
+    waiting_ += MPI_Wtime() - start;
+  }
   return before;
 }
 

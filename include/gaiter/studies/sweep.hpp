@@ -19,8 +19,10 @@ struct SweepReport {
   // Of this rank:
   std::int64_t designs = 0;
   double equilibria = 0;
-  double solving = 0, storing = 0, finishing = 0;  // seconds of the run
-  std::int64_t messages = 0;                       // sent to other ranks while solving
+  double solving = 0, storing = 0, finishing = 0;           // [s] of the run
+  double solving_processor = 0, archive_processor = 0;      // [s] of the processor, whoever else it serves
+  std::int64_t messages = 0;                                // sent to other ranks while solving
+  double waiting_for_messages = 0, waiting_at_the_end = 0;  // [s] the latter for the slowest rank
 };
 
 // Solves all designs that the archive does not hold yet, chunk by chunk, each by one group of ranks and
@@ -35,8 +37,8 @@ SweepReport run_sweep(MPI_Comm comm, const Request& request, const Designs& desi
 // there are.
 std::size_t chunk_designs(const model::Scene& scene, std::int64_t designs);
 
-// Throughput of all ranks, how evenly they were busy, what the archive took. @note Collective; the text is
-// rank 0's.
+// Throughput of all ranks, how evenly they were busy, what the archive took, and what would limit more ranks.
+// @note Collective; the text is rank 0's.
 std::string speed_summary(MPI_Comm comm, const SweepReport& report);
 
 }  // namespace gaiter::studies

@@ -36,6 +36,7 @@ class WorkQueue {
   Done done();
 
   std::int64_t messages() const { return messages_; }  // to other ranks, so far
+  double waiting() const { return waiting_; }          // for their answers [s]
 
  private:
   enum Place { counter, stop_reason, designs_done, designs_failed, places };
@@ -43,6 +44,7 @@ class WorkQueue {
 
   MPI_Comm comm_;
   std::int64_t items_, next_, messages_ = 0;
+  double waiting_ = 0;
   Order order_;
   int groups_;
   std::int64_t* board_ = nullptr;  // this rank's places
