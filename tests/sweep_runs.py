@@ -50,6 +50,15 @@ class Designs(InFolder):
             with self.subTest(words[1]):
                 self.same_on((1, 2), [*BARE, *words], code=0)
 
+    def test_ranks_that_share_a_mesh_in_groups_of_different_sizes(self):
+        words = [*BARE, "-fidelity", "axisym", "-axisym_refine", "0", "-voltage", "0 V", "-axisym_ranks_per_case", "2",
+                 "-sweep_bandage_stretch", "1.3,1.4,1.5"]
+        for ranks in (1, 3):
+            self.run_gaiter(*words, "-output", f"on{ranks}.h5", ranks=ranks)
+        with h5py.File(self.folder / "on1.h5") as one, h5py.File(self.folder / "on3.h5") as three:
+            for name in ("pressure_rest", "volume_rest", "status"):  # MUMPS adds up in another order
+                np.testing.assert_allclose(three[name][:], one[name][:], rtol=1e-10, err_msg=name)
+
     def test_a_case_of_a_sweep_is_that_scene_solved(self):
         self.run_gaiter(*BARE, *DRAWN, "-sweep_samples", "40", "-output", "sweep.h5")
         with h5py.File(self.folder / "sweep.h5") as sweep:
