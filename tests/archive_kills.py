@@ -108,12 +108,12 @@ class Kills(unittest.TestCase):
             self.assertEqual(run.end(), 0, run.err)
             return (pathlib.Path(folder) / "sweep.h5").read_bytes()
 
-    def kill_until_done(self, ranks, dice, moment, cases=CASES, chunk=CHUNK):
+    def kill_until_done(self, ranks, dice, moment, most_kills, cases=CASES, chunk=CHUNK):
         """Starts and kills until a run gets through; `moment(run)` waits for the instant. Returns the kills."""
         done, kills, merged_before, self.torn_merges = set(), 0, False, 0
         while True:
             run = Run(self.folder, ranks=ranks, cases=cases, chunk=chunk, pause=2)
-            if kills < 12 and moment(run):
+            if kills < most_kills and moment(run):
                 run.kill_one(dice)
                 kills += 1
             code = run.end()
@@ -138,7 +138,7 @@ class Kills(unittest.TestCase):
 
     def test_killed_at_any_instant(self):
         expected = self.undisturbed()
-        for seed, ranks in enumerate([0, 0, 2, 3]):
+        for seed, ranks in enumerate([0, 2, 3]):
             dice = random.Random(seed)
 
             def after_a_while(run, dice=dice):
@@ -148,7 +148,7 @@ class Kills(unittest.TestCase):
                 return run.process.poll() is None
 
             with self.subTest(ranks=ranks, seed=seed):
-                kills = self.kill_until_done(ranks, dice, after_a_while)
+                kills = self.kill_until_done(ranks, dice, after_a_while, 6)
                 self.assertGreater(kills, 2)
                 self.assertTrue(self.file.read_bytes() == expected)
                 self.assertEqual([path.name for path in self.folder.iterdir()], ["sweep.h5"])
@@ -169,7 +169,7 @@ class Kills(unittest.TestCase):
                 return False
 
             with self.subTest(ranks=ranks):
-                self.assertGreater(self.kill_until_done(ranks, dice, while_merging, **size), 1)
+                self.assertGreater(self.kill_until_done(ranks, dice, while_merging, 12, **size), 1)
                 self.assertGreater(self.torn_merges, 0)
                 self.assertTrue(self.file.read_bytes() == expected)
                 self.assertEqual([path.name for path in self.folder.iterdir()], ["sweep.h5"])

@@ -20,7 +20,10 @@ namespace gaiter::studies {
 
 namespace {
 
-constexpr double report_interval = 0.5;  // [s], so that 10,000 ranks do not flood the first
+// How often a rank reports [s]: so seldom that the reports of all do not flood the first.
+double report_interval(MPI_Comm comm) {
+  return std::max(0.5, 1e-3 * petsc::size(comm));
+}
 
 // Time that the processor has given to this thread, or to all threads of the process.
 double processor_seconds(clockid_t clock) {
@@ -117,7 +120,7 @@ void SweepRun::store(std::size_t chunk, const SolvedChunk& solved) {
 }
 
 void SweepRun::tell() {
-  if (MPI_Wtime() - told_ > report_interval) {
+  if (MPI_Wtime() - told_ > report_interval(comm_)) {
     queue_->report(untold_);
     untold_ = {};
     told_ = MPI_Wtime();

@@ -56,7 +56,7 @@ int WorkQueue::stopped() {
 
 void WorkQueue::report(Done more) {
   fetch(0, designs_done, more.designs, MPI_SUM);
-  fetch(0, designs_failed, more.failed, MPI_SUM);
+  if (more.failed > 0) fetch(0, designs_failed, more.failed, MPI_SUM);
 }
 
 WorkQueue::Done WorkQueue::done() {
