@@ -32,7 +32,7 @@ std::string_view meaning(model::Status status) {
     case model::Status::pulled_in:
       return "the voltage is more than the bandage can balance: it expands without end";
     case model::Status::no_equilibrium:
-      return "no equilibrium exists at any admissible radius";
+      return "no stable equilibrium exists, or none that can be reached from rest";
     case model::Status::diverged:
       return "the solver did not converge";
     case model::Status::invalid:

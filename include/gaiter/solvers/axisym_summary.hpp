@@ -17,7 +17,7 @@ struct AxisymSummary {
   double stretch = 0;           // inner radius of the tube over the module's reference radius, height average
   double slip = 0;              // largest |z - Z| of the tube's inner face
   double stable_voltage = 1;    // the largest reached on the branch of stable states, over the voltage
-  double field = 0;             // largest, times mesh.length over the voltage
+  double field = 0;             // largest away from the ends, times mesh.length over the voltage
   double maxwell = 0;           // P_a of Eq. (8), height average
   double highest_pressure = 0;  // away from the ends, where pressures are singular
   bool open_everywhere = false;  // the tube does not touch
