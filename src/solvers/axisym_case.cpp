@@ -141,6 +141,13 @@ std::vector<AxisymSummary> AxisymCase<P>::actuated() {
 }
 
 template <int P>
+int AxisymCase<P>::unknowns() const {
+  PetscInt size = 0;
+  petsc::check(VecGetSize(x_.get(), &size));
+  return static_cast<int>(size);
+}
+
+template <int P>
 void AxisymCase<P>::show(bool actuated, const AxisymObserver& observer) const {
   AxisymFields fields = extract_fields(*system_, x_.get());
   fields.actuated = actuated;

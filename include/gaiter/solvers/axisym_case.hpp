@@ -39,6 +39,8 @@ class AxisymCase {
   // From the state at rest, which comes first. @note Collective.
   std::vector<AxisymSummary> actuated();
 
+  int unknowns() const;  // of all ranks
+
   // Hands the fields of the state last found over, on rank 0. @note Collective.
   void show(bool actuated, const AxisymObserver& observer) const;
 
