@@ -3,9 +3,11 @@
 // of ranks that share the mesh.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "gaiter/petsc/session.hpp"
+#include "gaiter/solvers/axisym_case.hpp"
 #include "gaiter/solvers/axisym_model.hpp"
 #include "paper_scene.hpp"
 
@@ -80,6 +82,33 @@ TEST(Cone, AgreesWithCalculiX) {
       EXPECT_NEAR(result.volume_rest, reference.volume, 5e-5 * reference.volume);
       EXPECT_NEAR(result.slip_max, 0.40e-3, 0.02e-3);
     }
+}
+
+// Change of the leg's radius at mid-height.
+TEST(Leg, GivesWayAtMidHeightAsInCalculiX) {
+  struct Reference {
+    double lower_radius, upper_radius, stretch, bulk_modulus, displacement;  // [m, m, 1, Pa, m]
+  };
+  for (const Reference& reference : {Reference{39.6e-3, 39.6e-3, 2.2, 37e6, -0.84087e-3},
+                                     Reference{39.6e-3, 39.6e-3, 2.2, 370e6, -0.84799e-3},
+                                     Reference{36.1e-3, 43.1e-3, 1.4, 37e6, -0.16502e-3},
+                                     Reference{36.1e-3, 43.1e-3, 1.4, 370e6, -0.16519e-3}}) {
+    const model::Scene scene =
+        case_of(reference.lower_radius, reference.upper_radius, reference.stretch, reference.bulk_modulus);
+    solvers::AxisymCase<2> problem(PETSC_COMM_WORLD, scene, 0, 0, 1);
+    ASSERT_TRUE(problem.rest()[0].converged);
+    const auto& space = problem.system().space();
+    const auto& skin = space.leg.nodes;
+    // At the height in space, to which the material of a cone has moved from a little below; between two
+    // nodes the skin is straight enough.
+    const auto& leg = problem.system().leg();
+    const double height = 0.5 * skin.back().height;
+    const std::size_t above = std::ranges::upper_bound(leg.height, height) - leg.height.begin();
+    const double place = (height - leg.height[above - 1]) / (leg.height[above] - leg.height[above - 1]);
+    const double radius = (1 - place) * leg.radius[above - 1] + place * leg.radius[above];
+    const double moved = radius * space.mesh.length - 0.5 * (reference.lower_radius + reference.upper_radius);
+    EXPECT_NEAR(moved, reference.displacement, 1e-3 * std::fabs(reference.displacement));
+  }
 }
 
 TEST(Cone, SteepOnesConvergeOnEveryMesh) {
