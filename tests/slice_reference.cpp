@@ -125,7 +125,6 @@ TEST(PaperTable, HasAllItsDigitsOnAnyNumberOfRanks) {
 
 // The same from this suite's own reference, which shares nothing with the table: every slice of one segment.
 TEST(PaperTable, AgreesWithTheReferenceSliceBySlice) {
-  if (petsc::size(PETSC_COMM_WORLD) > 1) GTEST_SKIP() << "needs one rank";
   const model::Scene scene = paper::scene(2.2);
   const auto result = tasks::solve_one(scene);
   const physics::Quadrature rule = physics::gauss_legendre(6);

@@ -19,8 +19,8 @@ namespace gaiter::archive {
 // rank without any other, and is there whole or not at all. Meanwhile FILE.h5 is a small file that shows what
 // is there so far; finish() makes it the archive.
 //
-// Memory per rank: a few times one chunk. Tens of thousands of chunks are fine, up to 250 show in FILE.h5 while
-// the run lasts.
+// Memory per rank: a few times one chunk. Tens of thousands of chunks are fine, up to 250 show in FILE.h5
+// while the run lasts.
 class SweepArchive {
  public:
   // Begins a new archive, or takes up an unfinished one. Throws on all ranks base::InputError that begins
