@@ -47,8 +47,18 @@ class Run:
 
     def end(self):
         """Waits for the end of all its processes. Returns the exit code; `out` and `err` are what it has said."""
+        deadline = time.monotonic() + 60
         try:
-            self.out, self.err = self.process.communicate(timeout=60)
+            while True:
+                try:
+                    self.out, self.err = self.process.communicate(timeout=5)
+                    break
+                except subprocess.TimeoutExpired:
+                    if self.ranks and set(processes_of(3, self.process.pid)) <= {self.process.pid}:
+                        # When a rank dies while it starts, Open MPI's mpiexec can wait for ever for a lock of its own.
+                        self.process.kill()
+                    elif time.monotonic() > deadline:
+                        raise
         finally:
             self.kill_all()  # ranks that have lost their mpiexec
         return self.process.returncode
