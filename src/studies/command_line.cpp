@@ -49,14 +49,15 @@ CommandLine split_command_line(int argc, const char* const* argv) {
 
 Command parse_command(const std::string& word) {
   if (word.empty())
-    throw base::InputError("a command is missing: solve or sweep; gaiter -help lists the options");
+    throw base::InputError("a command is missing: solve, sweep or report; gaiter -help lists the options");
   if (word == "solve") return Command::solve;
   if (word == "sweep") return Command::sweep;
-  const std::array<std::string, 2> commands{"solve", "sweep"};
+  if (word == "report") return Command::report;
+  const std::array<std::string, 3> commands{"solve", "sweep", "report"};
   const std::string near = base::nearest(word, commands);
   throw base::InputError("unknown command '" + word + "'" +
                          (near.empty() ? "" : "; did you mean '" + near + "'?") +
-                         " The commands are solve and sweep; gaiter -help lists the options");
+                         " The commands are solve, sweep and report; gaiter -help lists the options");
 }
 
 }  // namespace gaiter::studies

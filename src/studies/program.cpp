@@ -19,6 +19,7 @@
 #include "gaiter/studies/axisym_view.hpp"
 #include "gaiter/studies/help.hpp"
 #include "gaiter/studies/paper_comparison.hpp"
+#include "gaiter/studies/report.hpp"
 #include "gaiter/studies/result_table.hpp"
 #include "gaiter/studies/scene_checks.hpp"
 #include "gaiter/studies/scene_options.hpp"
@@ -169,6 +170,12 @@ int run_program(petsc::Session& session, const CommandLine& line) {
   const Command command = parse_command(line.command);
   for (const std::string& file : line.options_files) session.insert_options_file(file);
   const auto given = session.unused_options();
+  if (command == Command::report) {
+    for (const auto& [name, text] : given) session.mark_used(name);
+    const std::string page = write_report(PETSC_COMM_WORLD, given);
+    if (printing) fmt::print("wrote {}\n", page);
+    return success;
+  }
   Request request = parse_request(command, given);
   check_views(command, request);
   ForeignOptions foreign;

@@ -5,6 +5,13 @@ namespace gaiter::studies {
 
 std::vector<Option> program_options() {
   return {
+      {.name = "archive",
+       .kind = Kind::text,
+       .scope = Scope::program,
+       .format = "a file name",
+       .example = "gaiter.h5",
+       .doc = "Archive to draw.",
+       .commands = {Command::report}},
       {.name = "comparison",
        .kind = Kind::choice,
        .scope = Scope::program,
@@ -40,7 +47,8 @@ std::vector<Option> program_options() {
        .scope = Scope::program,
        .format = "a file name",
        .default_text = "gaiter.h5",
-       .doc = "Archive to write (HDF5)."},
+       .doc = "Archive to write (HDF5); of report the page (HTML), by default named like its archive.",
+       .commands = {Command::solve, Command::sweep, Command::report}},
       {.name = "output_variables",
        .kind = Kind::text,
        .scope = Scope::program,

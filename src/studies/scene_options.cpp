@@ -132,6 +132,8 @@ void Parser::read_settings() {
       if (path.empty()) throw value_error(entry, given.name, given.text, "a value is missing");
     } else if (name == "output_variables") {
       read_output_variables(given);
+    } else if (std::ranges::find(entry.commands, Command::report) != entry.commands.end()) {
+      throw InputError(fmt::format("-{} '{}': belongs to the command report", given.name, given.text));
     } else if (name == "options_file" || name == "help") {
       // Those of the command line are taken from it before PETSc sees them.
       throw InputError(fmt::format("-{} '{}': belongs on the command line, not in an options file",

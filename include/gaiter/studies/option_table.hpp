@@ -12,7 +12,7 @@
 
 namespace gaiter::studies {
 
-enum class Command { solve, sweep };
+enum class Command { solve, sweep, report };
 enum class Comparison { none, paper };  // paper: the paper's printed results beside the computed ones
 
 enum class Progress { automatic, line, log, off };  // how a sweep tells how far it is
