@@ -24,4 +24,7 @@ Quadrature slice_quadrature(model::SliceRule rule, int slices);
 // wall.
 double gauss_error_of_exponential(int points, double rate);
 
+// Its part that the rate has no part in: ln((n!)^4 / ((2n + 1) ((2n)!)^3)) with n = `points`.
+double gauss_log_constant(int points);
+
 }  // namespace gaiter::physics

@@ -30,14 +30,19 @@ struct PackState {
 void start_at_rest(const SliceShape& shape, const Pack* rows, PackState& state, Pack& rigid_pressure);
 
 // Actuated: from the rest state held in `state`. The root sought is the largest below the pressure at rest,
-// which is the one that a slowly rising voltage reaches.
-void start_actuated(PackState& state);
+// which is the one that a slowly rising voltage reaches. The residual is the actuation pressure, since the
+// rest is in equilibrium; so it comes with the start.
+void start_actuated(const SliceShape& shape, const Pack* rows, PackState& state);
 
 // The paper's start: the undeformed leg at rest; under voltage the radius at rest, held in `state`.
 void start_fixed_point(bool at_rest, PackState& state);
 
 // Residual and Jacobian at the iterate, on F1 = 0 or not.
 void evaluate_residual(const SliceShape& shape, const Pack* rows, PackState& state);
+
+// The same of the open slices. A closed one keeps its slopes, from which the voltage starts: they must not
+// depend on whether a neighbour is solved again.
+void evaluate_open(const SliceShape& shape, const Pack* rows, PackState& state);
 
 // Newton directions y = J^-1 F of (F1, F2) given.
 void solve_blocks(const Pack& strain_slope, const Pack& bandage_slope, const Pack& strain_residual,
