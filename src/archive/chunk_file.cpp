@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-2-Clause
 #include "gaiter/archive/chunk_file.hpp"
 
-#include <zlib.h>
-
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <memory>
 
+#include "gaiter/archive/compression.hpp"
 #include "gaiter/archive/durable_file.hpp"
 #include "gaiter/archive/table_file.hpp"
 #include "gaiter/base/error.hpp"
@@ -15,11 +15,7 @@
 namespace gaiter::archive {
 namespace {
 
-constexpr char mark[8] = {'g', 'a', 'i', 't', 'e', 'r', ' ', '1'};
-
-uLong checked(uLong check, const std::byte* bytes, std::size_t count) {
-  return crc32_z(check, reinterpret_cast<const Bytef*>(bytes), count);
-}
+constexpr char mark[8] = {'g', 'a', 'i', 't', 'e', 'r', ' ', '2'};
 
 }  // namespace
 
@@ -35,8 +31,10 @@ FileOfCases::FileOfCases(const Layout& layout, const Provenance& provenance, con
     std::vector<std::byte> values;
     for (std::size_t i = 0; i < variables.size(); ++i) {
       const std::size_t item = bytes_of(variables[i].stored);
-      values.assign(range.chunk * item * (variables[i].per_segment ? layout.segments.size() : 1),
-                    std::byte{0});
+      const std::size_t rows = variables[i].per_segment ? layout.segments.size() : 1;
+      values.resize(range.chunk * rows * item);
+      std::fill(values.begin() + static_cast<std::ptrdiff_t>(range.count * rows * item), values.end(),
+                std::byte{0});
       gather(variables[i], results, values.data());
       put_chunk(made[i].get(), 0, compressor.compress(values, item));
     }
@@ -60,7 +58,7 @@ Seal seal_of(std::uint64_t sweep, std::span<const std::byte> bytes) {
   std::memcpy(seal.mark, mark, sizeof mark);
   seal.sweep = sweep;
   seal.bytes = bytes.size();
-  seal.check = checked(crc32_z(0, nullptr, 0), bytes.data(), bytes.size());
+  seal.check = adler32(1, bytes);
   return seal;
 }
 
@@ -75,13 +73,13 @@ ChunkState examine_chunk(const std::string& path, std::uint64_t sweep) {
   // The last bytes of the file are looked at as they come by.
   std::vector<std::byte> buffer(std::size_t{1} << 20);
   std::vector<std::byte> tail;
-  uLong check = crc32_z(0, nullptr, 0);
+  std::uint32_t check = 1;
   std::uint64_t bytes = 0;
   while (const std::size_t got = std::fread(buffer.data(), 1, buffer.size(), file.get())) {
     tail.insert(tail.end(), buffer.begin(), buffer.begin() + static_cast<std::ptrdiff_t>(got));
     if (tail.size() > sizeof(Seal)) {
       const std::size_t passed = tail.size() - sizeof(Seal);
-      check = checked(check, tail.data(), passed);
+      check = adler32(check, std::span<const std::byte>(tail).first(passed));
       bytes += passed;
       tail.erase(tail.begin(), tail.begin() + static_cast<std::ptrdiff_t>(passed));
     }

@@ -37,7 +37,7 @@ struct Seal {
   char mark[8];
   std::uint64_t sweep;  // a number that sweeps differ in
   std::uint64_t bytes;  // of HDF5 before the seal
-  std::uint64_t check;  // their CRC-32
+  std::uint64_t check;  // their Adler-32
 };
 
 Seal seal_of(std::uint64_t sweep, std::span<const std::byte> bytes);
