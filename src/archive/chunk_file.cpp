@@ -20,33 +20,36 @@ constexpr char mark[8] = {'g', 'a', 'i', 't', 'e', 'r', ' ', '2'};
 }  // namespace
 
 FileOfCases::FileOfCases(const Layout& layout, const Provenance& provenance, const CaseRange& range,
-                         const CaseResults& results, bool newest_format)
-    : file_(newest_format) {
+                         const CaseResults& results, bool newest_format, Workspace& workspace)
+    : file_(newest_format, workspace.file_bytes) {
   const QuietErrors quiet;
   require_complete(layout, range.count, results);
   {
     const std::vector<Id> made = fill_file(file_.get(), layout, provenance, range);
     const std::vector<FileVariable> variables = variables_of(layout);
-    Compressor compressor;
-    std::vector<std::byte> values;
+    std::vector<std::byte>& values = workspace.values;
     for (std::size_t i = 0; i < variables.size(); ++i) {
       const std::size_t item = bytes_of(variables[i].stored);
       const std::size_t rows = variables[i].per_segment ? layout.segments.size() : 1;
-      values.resize(range.chunk * rows * item);
-      std::fill(values.begin() + static_cast<std::ptrdiff_t>(range.count * rows * item), values.end(),
-                std::byte{0});
+      const std::size_t filled = range.count * rows * item, all = range.chunk * rows * item;
+      if (values.size() < all) {
+        values.resize(all);
+      }
+      std::fill_n(values.begin() + static_cast<std::ptrdiff_t>(filled), all - filled, std::byte{0});
       gather(variables[i], results, values.data());
-      put_chunk(made[i].get(), 0, compressor.compress(values, item));
+      put_chunk(made[i].get(), 0, workspace.compressor.compress(std::span(values).first(all), item));
     }
   }
   bytes_ = file_.close();
+  workspace.file_bytes = std::max(workspace.file_bytes, bytes_.size() + bytes_.size() / 32);
 }
 
 void write_archive(const std::string& path, const Layout& layout, const Provenance& provenance,
                    const CaseResults& results) {
   try {
     const CaseRange all{0, layout.cases, layout.cases};
-    const FileOfCases file(layout, provenance, all, results, false);
+    Workspace workspace;
+    const FileOfCases file(layout, provenance, all, results, false, workspace);
     write_durably(path, temporary_name(path), {file.bytes()});
   } catch (const std::exception& error) {
     throw base::InternalError("-output " + path + ": " + error.what());

@@ -82,10 +82,11 @@ Method method_for(std::span<const std::byte> plane) {
   if (plane.size() < 4096) {
     return Method::search;
   }
-  // Of noise it is one pair in 256; codes of unequal length are not worth their time before there are some
-  // twice as many.
+  // Of noise it is one pair in 256. Codes of unequal length are not worth their time before there are very
+  // many more: on the second byte of a computed number they save 6 % of an archive and take a seventh of its
+  // time.
   constexpr double noise = windows * window * (window - 1) / 2.0 / 256;
-  if (equal_pairs(plane) < 2 * noise) {
+  if (equal_pairs(plane) < 30 * noise) {
     return Method::store;
   }
   return repetition(plane) < 0.25 ? Method::count_bytes : Method::search;

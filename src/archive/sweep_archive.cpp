@@ -39,6 +39,7 @@ struct SweepArchive::State {
   std::uint64_t sweep;
   bool complete = false;
   std::vector<char> finished;
+  Workspace workspace;
   std::shared_ptr<const FileOfCases> written;
   std::future<void> writing;  // of the chunk stored last, from the bytes of `written`
 
@@ -243,7 +244,8 @@ void SweepArchive::store(std::size_t chunk, std::span<const model::SegmentResult
       throw base::InternalError("there is no such chunk to store");
     }
     file = std::make_shared<const FileOfCases>(state.layout, state.provenance, state.range(chunk),
-                                               CaseResults{rows, wall_times, swept_values}, true);
+                                               CaseResults{rows, wall_times, swept_values}, true,
+                                               state.workspace);
   } catch (const std::exception& error) {
     throw told(error);
   }

@@ -5,7 +5,9 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
+#include "gaiter/archive/compression.hpp"
 #include "gaiter/archive/hdf5.hpp"
 #include "gaiter/archive/layout.hpp"
 #include "gaiter/archive/memory_file.hpp"
@@ -13,12 +15,19 @@
 
 namespace gaiter::archive {
 
+// What the making of one file leaves to the next: to have memory anew costs as much as to fill it.
+struct Workspace {
+  Compressor compressor;
+  std::vector<std::byte> values;
+  std::size_t file_bytes = std::size_t{1} << 20;  // of the largest file so far, and a little more
+};
+
 // An HDF5 file with these cases, in memory. `range.count` may be less than `range.chunk`: then the chunk is
 // filled up, as the last one of a long variable is. Throws base::InternalError.
 class FileOfCases {
  public:
   FileOfCases(const Layout& layout, const Provenance& provenance, const CaseRange& range,
-              const CaseResults& results, bool newest_format);
+              const CaseResults& results, bool newest_format, Workspace& workspace);
   std::span<const std::byte> bytes() const { return bytes_; }
 
  private:
