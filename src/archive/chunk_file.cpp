@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <fstream>
 #include <memory>
 
 #include "gaiter/archive/compression.hpp"
@@ -38,6 +39,7 @@ FileOfCases::FileOfCases(const Layout& layout, const Provenance& provenance, con
       std::fill_n(values.begin() + static_cast<std::ptrdiff_t>(filled), all - filled, std::byte{0});
       gather(variables[i], results, values.data());
       put_chunk(made[i].get(), 0, workspace.compressor.compress(std::span(values).first(all), item));
+      places_.push_back(place_of_first_chunk(made[i].get()));
     }
   }
   bytes_ = file_.close();
@@ -56,13 +58,25 @@ void write_archive(const std::string& path, const Layout& layout, const Provenan
   }
 }
 
-Seal seal_of(std::uint64_t sweep, std::span<const std::byte> bytes) {
+Seal seal_of(std::uint64_t sweep, const FileOfCases& file) {
+  const auto places = std::as_bytes(file.places());
   Seal seal{};
   std::memcpy(seal.mark, mark, sizeof mark);
   seal.sweep = sweep;
-  seal.bytes = bytes.size();
-  seal.check = adler32(1, bytes);
+  seal.bytes = file.bytes().size() + places.size();
+  seal.check = adler32(adler32(1, file.bytes()), places);
   return seal;
+}
+
+std::vector<Extent> places_in(const std::string& path, std::size_t variables) {
+  std::vector<Extent> places(variables);
+  const auto bytes = static_cast<std::streamoff>(variables * sizeof(Extent));
+  std::ifstream file(path, std::ios::binary);
+  file.seekg(-bytes - static_cast<std::streamoff>(sizeof(Seal)), std::ios::end);
+  if (!file.read(reinterpret_cast<char*>(places.data()), bytes)) {
+    throw base::InternalError("cannot read " + path + ": " + std::strerror(errno));
+  }
+  return places;
 }
 
 ChunkState examine_chunk(const std::string& path, std::uint64_t sweep) {
