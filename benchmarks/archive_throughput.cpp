@@ -102,9 +102,10 @@ void store(benchmark::State& state) {
 
 void compress_and_build(benchmark::State& state) {
   double bytes = 0;
+  archive::Workspace workspace;
   for (auto _ : state) {
     const archive::FileOfCases file(chunk().layout, chunk().provenance, {0, cases, cases}, chunk().results(),
-                                    true);
+                                    true, workspace);
     bytes = static_cast<double>(file.bytes().size());
   }
   report(state, 1, bytes);

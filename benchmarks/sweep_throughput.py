@@ -29,7 +29,7 @@ def main():
               f"{median(runs, 'archive_percent'):7.1f}% {median(runs, 'archive_processor_percent'):10.1f}% "
               f"{median(runs, 'at_the_end'):7.2f}s {median(runs, 'merge'):5.2f}s")
     one = done["1 rank"]
-    # If each rank had a processor to itself: all but the merge is shared.
+    # If each rank had a processor to itself, and as if the merge, which waits for the disk, were not shared.
     merge = median(one, "merge") / median(one, "seconds")
     for name in ("2 ranks", "2 ranks, weak"):
         cost = processor["1 rank"] / processor[name]
@@ -41,8 +41,9 @@ def main():
     merged = median(weak, "designs") / median(weak, "merge")
     messages, waiting = median(weak, "messages"), median(weak, "waiting")
     print(f"\nfor 10,000 ranks: {rate:.3g} designs a second and rank; {messages:.2g} messages and {waiting:.2g} s of waiting "
-          f"for them a design;\nthe first rank merges {merged:.3g} designs a second, as many as {merged / rate:.0f} ranks "
-          f"solve meanwhile: 1e9 designs are solved in {1e9 / rate / 1e4:.1f} s and merged in {1e9 / merged:.0f} s")
+          f"for them a design;\n2 ranks and this disk merge {merged:.3g} designs a second, as many as {merged / rate:.0f} ranks "
+          f"solve meanwhile: 1e9 designs are solved in {1e9 / rate / 1e4:.1f} s and merged in {1e9 / merged:.0f} s by a "
+          f"disk like this;\nall ranks merge, so a parallel file system takes as much less as it is faster")
 
 
 if __name__ == "__main__":

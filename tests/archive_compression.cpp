@@ -85,6 +85,18 @@ TEST(Compression, GivesBackEveryBit) {
   EXPECT_TRUE(restored(compressor.compress(values, 8), values.size(), 8) == values);
 }
 
+TEST(Compression, ChecksumIsZlibs) {
+  std::mt19937_64 random(3);
+  Bytes bytes(100003, std::byte{255});  // the largest sums first
+  for (std::size_t i = bytes.size() / 2; i < bytes.size(); ++i) {
+    bytes[i] = static_cast<std::byte>(random());
+  }
+  for (const std::size_t count : {0u, 1u, 15u, 16u, 17u, 4095u, 4096u, 4097u, 50000u, 100003u}) {
+    const auto some = std::span<const std::byte>(bytes).first(count);
+    EXPECT_EQ(adler32(77, some), ::adler32_z(77, reinterpret_cast<const Bytef*>(some.data()), some.size()));
+  }
+}
+
 TEST(Compression, IsNearlyAsSmallAsASearchEverywhere) {
   Compressor compressor;
   for (const auto& values :

@@ -173,9 +173,9 @@ class Kills(unittest.TestCase):
             def while_merging(run, dice=dice):
                 while run.process.poll() is None:
                     if self.parts.is_dir() and any(self.parts.glob("merged*")):
-                        time.sleep(dice.uniform(0, 0.2))
+                        time.sleep(dice.uniform(0, 0.03))
                         return True
-                    time.sleep(0.002)
+                    time.sleep(0.0005)
                 return False
 
             with self.subTest(ranks=ranks):
@@ -212,8 +212,8 @@ class Kills(unittest.TestCase):
     def test_full_disk(self):
         # Room for the last and small chunk only, or for all but not for the whole.
         for limit, chunk, ranks, what in ((100_000, 2400, 0, "cannot be stored"), (100_000, 2400, 3, "cannot be stored"),
-                                          (200_000, 1000, 0, "cannot make room for"),
-                                          (200_000, 1000, 2, "cannot make room for")):
+                                          (140_000, 1000, 0, "cannot make room for"),
+                                          (140_000, 1000, 2, "cannot make room for")):
             with self.subTest(limit=limit, ranks=ranks):
                 run = Run(self.folder, ranks=ranks, cases=5000, chunk=chunk,
                           env={**os.environ, "ARCHIVE_RUN_LIMIT": str(limit)})

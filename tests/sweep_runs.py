@@ -77,9 +77,9 @@ class Designs(InFolder):
         run = self.run_gaiter(*BARE, *DRAWN, "-sweep_samples", "500", "-output", "out.h5", code=3)
         self.assertRegex(run.out, r"segments invalid: the values of the design make no possible scene")
         self.assertRegex(run.out, r"invalid, for example case \d+: -bandage_thickness '-.* m': must be at least")
-        command = next(line for line in run.out.splitlines() if line.startswith("  python3 -c"))
-        listed = subprocess.run(command, shell=True, cwd=self.folder, capture_output=True, text=True, check=True,
-                                env={**os.environ, "PATH": "/usr/bin:" + os.environ["PATH"]}).stdout.splitlines()
+        command = next(line for line in run.out.splitlines() if line.startswith("  /usr/bin/python3 -c"))
+        listed = subprocess.run(command, shell=True, cwd=self.folder, capture_output=True, text=True,
+                                check=True).stdout.splitlines()
         with h5py.File(self.folder / "out.h5") as file:
             failed = np.argwhere(file["status"][:] >= 5)
         self.assertEqual([line.split()[:2] for line in listed], [[str(c), str(s)] for c, s in failed])
@@ -145,6 +145,10 @@ class Stopped(InFolder):
                 self.assertRegex(out, rf"stopped by signal {int(number)}; \d+ of 150000 designs are stored")
                 again = self.run_gaiter(*BARE, *LONG, "-output", name, ranks=2)
                 self.assertRegex(again.out, r"\d+ designs were in SIG\w+.h5 from earlier runs")
+                self.assertIn(f"wrote {name}", again.out)
+                third = self.run_gaiter(*BARE, *LONG, "-output", name)
+                self.assertIn(f"{name} is complete already; nothing was done", third.out)
+                self.assertNotIn("wrote", third.out)
                 whole, taken_up = contents(self.folder / "whole.h5"), contents(self.folder / name)
                 self.assertEqual([key for key in whole if whole[key] != taken_up[key]], [])
 

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-2-Clause
 #include "gaiter/archive/chunk_file.hpp"
 
-#include <zlib.h>
-
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <fstream>
 #include <memory>
 
+#include "gaiter/archive/compression.hpp"
 #include "gaiter/archive/durable_file.hpp"
 #include "gaiter/archive/table_file.hpp"
 #include "gaiter/base/error.hpp"
@@ -15,53 +16,67 @@
 namespace gaiter::archive {
 namespace {
 
-constexpr char mark[8] = {'g', 'a', 'i', 't', 'e', 'r', ' ', '1'};
-
-uLong checked(uLong check, const std::byte* bytes, std::size_t count) {
-  return crc32_z(check, reinterpret_cast<const Bytef*>(bytes), count);
-}
+constexpr char mark[8] = {'g', 'a', 'i', 't', 'e', 'r', ' ', '2'};
 
 }  // namespace
 
 FileOfCases::FileOfCases(const Layout& layout, const Provenance& provenance, const CaseRange& range,
-                         const CaseResults& results, bool newest_format)
-    : file_(newest_format) {
+                         const CaseResults& results, bool newest_format, Workspace& workspace)
+    : file_(newest_format, workspace.file_bytes) {
   const QuietErrors quiet;
   require_complete(layout, range.count, results);
   {
     const std::vector<Id> made = fill_file(file_.get(), layout, provenance, range);
     const std::vector<FileVariable> variables = variables_of(layout);
-    Compressor compressor;
-    std::vector<std::byte> values;
+    std::vector<std::byte>& values = workspace.values;
     for (std::size_t i = 0; i < variables.size(); ++i) {
       const std::size_t item = bytes_of(variables[i].stored);
-      values.assign(range.chunk * item * (variables[i].per_segment ? layout.segments.size() : 1),
-                    std::byte{0});
+      const std::size_t rows = variables[i].per_segment ? layout.segments.size() : 1;
+      const std::size_t filled = range.count * rows * item, all = range.chunk * rows * item;
+      if (values.size() < all) {
+        values.resize(all);
+      }
+      std::fill_n(values.begin() + static_cast<std::ptrdiff_t>(filled), all - filled, std::byte{0});
       gather(variables[i], results, values.data());
-      put_chunk(made[i].get(), 0, compressor.compress(values, item));
+      put_chunk(made[i].get(), 0, workspace.compressor.compress(std::span(values).first(all), item));
+      places_.push_back(place_of_first_chunk(made[i].get()));
     }
   }
   bytes_ = file_.close();
+  workspace.file_bytes = std::max(workspace.file_bytes, bytes_.size() + bytes_.size() / 32);
 }
 
 void write_archive(const std::string& path, const Layout& layout, const Provenance& provenance,
                    const CaseResults& results) {
   try {
     const CaseRange all{0, layout.cases, layout.cases};
-    const FileOfCases file(layout, provenance, all, results, false);
+    Workspace workspace;
+    const FileOfCases file(layout, provenance, all, results, false, workspace);
     write_durably(path, temporary_name(path), {file.bytes()});
   } catch (const std::exception& error) {
     throw base::InternalError("-output " + path + ": " + error.what());
   }
 }
 
-Seal seal_of(std::uint64_t sweep, std::span<const std::byte> bytes) {
+Seal seal_of(std::uint64_t sweep, const FileOfCases& file) {
+  const auto places = std::as_bytes(file.places());
   Seal seal{};
   std::memcpy(seal.mark, mark, sizeof mark);
   seal.sweep = sweep;
-  seal.bytes = bytes.size();
-  seal.check = checked(crc32_z(0, nullptr, 0), bytes.data(), bytes.size());
+  seal.bytes = file.bytes().size() + places.size();
+  seal.check = adler32(adler32(1, file.bytes()), places);
   return seal;
+}
+
+std::vector<Extent> places_in(const std::string& path, std::size_t variables) {
+  std::vector<Extent> places(variables);
+  const auto bytes = static_cast<std::streamoff>(variables * sizeof(Extent));
+  std::ifstream file(path, std::ios::binary);
+  file.seekg(-bytes - static_cast<std::streamoff>(sizeof(Seal)), std::ios::end);
+  if (!file.read(reinterpret_cast<char*>(places.data()), bytes)) {
+    throw base::InternalError("cannot read " + path + ": " + std::strerror(errno));
+  }
+  return places;
 }
 
 ChunkState examine_chunk(const std::string& path, std::uint64_t sweep) {
@@ -75,13 +90,13 @@ ChunkState examine_chunk(const std::string& path, std::uint64_t sweep) {
   // The last bytes of the file are looked at as they come by.
   std::vector<std::byte> buffer(std::size_t{1} << 20);
   std::vector<std::byte> tail;
-  uLong check = crc32_z(0, nullptr, 0);
+  std::uint32_t check = 1;
   std::uint64_t bytes = 0;
   while (const std::size_t got = std::fread(buffer.data(), 1, buffer.size(), file.get())) {
     tail.insert(tail.end(), buffer.begin(), buffer.begin() + static_cast<std::ptrdiff_t>(got));
     if (tail.size() > sizeof(Seal)) {
       const std::size_t passed = tail.size() - sizeof(Seal);
-      check = checked(check, tail.data(), passed);
+      check = adler32(check, std::span<const std::byte>(tail).first(passed));
       bytes += passed;
       tail.erase(tail.begin(), tail.begin() + static_cast<std::ptrdiff_t>(passed));
     }

@@ -97,6 +97,18 @@ std::string temporary_name(const std::string& path) {
   return name.str();
 }
 
+void write_at(int descriptor, std::span<const std::byte> bytes, std::uint64_t place) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::pwrite(descriptor, bytes.data(), bytes.size(), static_cast<off_t>(place));
+    if (written < 0 && errno != EINTR) {
+      fail("write values", errno);
+    }
+    const std::size_t done = written > 0 ? static_cast<std::size_t>(written) : 0;
+    bytes = bytes.subspan(done);
+    place += done;
+  }
+}
+
 void publish(const std::string& temporary, const std::string& path) {
   bring_to_disk(temporary, O_RDONLY);
   give_name(temporary, path);

@@ -38,10 +38,10 @@ struct MemoryFile::Buffer {
   static herr_t drop(void*) noexcept { return 0; }
 };
 
-MemoryFile::MemoryFile(bool newest_format) : buffer_(std::make_unique<Buffer>()) {
+MemoryFile::MemoryFile(bool newest_format, std::size_t expected) : buffer_(std::make_unique<Buffer>()) {
   const std::string action = "make a file in memory";
   const Id access = own(H5Pcreate(H5P_FILE_ACCESS), action);
-  check(H5Pset_fapl_core(access.get(), std::size_t{1} << 20, false), action);
+  check(H5Pset_fapl_core(access.get(), expected, false), action);
   H5FD_file_image_callbacks_t callbacks{&Buffer::allocate, &Buffer::copy, &Buffer::grow, &Buffer::release,
                                         &Buffer::keep,     &Buffer::drop, buffer_.get()};
   check(H5Pset_file_image_callbacks(access.get(), &callbacks), action);

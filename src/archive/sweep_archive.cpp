@@ -39,6 +39,7 @@ struct SweepArchive::State {
   std::uint64_t sweep;
   bool complete = false;
   std::vector<char> finished;
+  Workspace workspace;
   std::shared_ptr<const FileOfCases> written;
   std::future<void> writing;  // of the chunk stored last, from the bytes of `written`
 
@@ -54,6 +55,7 @@ struct SweepArchive::State {
   void show_what_is_there() const;
   void require_replaceable() const;
   void finish() const;
+  void remove_share() const;
 };
 
 SweepArchive::State::State(MPI_Comm on, std::string file, Layout shape, Provenance run, std::size_t cases)
@@ -165,20 +167,44 @@ void SweepArchive::State::show_what_is_there() const {
 }
 
 void SweepArchive::State::finish() const {
-  const std::string merged = folder.temporary("merged");
+  const std::string merged = first_rank() ? folder.temporary("merged") : "";
   try {
-    const std::vector<char> stored = folder.stored(finished.size());
-    if (const auto missing = std::find(stored.begin(), stored.end(), 0); missing != stored.end()) {
-      throw base::InternalError("chunk " + std::to_string(missing - stored.begin()) + " is not stored");
-    }
-    require_replaceable();
-    merge_chunks(merged, folder, layout, provenance, chunk_cases);
-    publish(merged, path);
+    agreed(comm, context(), [&] {
+      if (!first_rank()) {
+        return;
+      }
+      const std::vector<char> stored = folder.stored(finished.size());
+      if (const auto missing = std::find(stored.begin(), stored.end(), 0); missing != stored.end()) {
+        throw base::InternalError("chunk " + std::to_string(missing - stored.begin()) + " is not stored");
+      }
+      require_replaceable();
+    });
+    merge_chunks(comm, context(), merged, folder, layout, provenance, chunk_cases);
+    agreed(comm, context(), [&] {
+      if (first_rank()) {
+        publish(merged, path);
+      }
+    });
   } catch (const std::exception& error) {
-    ::unlink(merged.c_str());
+    if (first_rank()) {
+      ::unlink(merged.c_str());
+    }
     throw base::InternalError(error.what() + std::string(kept));
   }
-  folder.remove();
+  remove_share();
+}
+
+// Each rank what it has copied, for that takes as long as the copying. All that can be lost here is room.
+void SweepArchive::State::remove_share() const {
+  for (std::size_t i = 0; i < finished.size(); ++i) {
+    if (is_share_of(petsc::rank(comm), petsc::size(comm), i)) {
+      ::unlink(folder.chunk_path(i).c_str());
+    }
+  }
+  MPI_Barrier(comm);
+  if (first_rank()) {
+    folder.remove();
+  }
 }
 
 SweepArchive::SweepArchive(MPI_Comm comm, std::string path, Layout layout, Provenance provenance,
@@ -243,18 +269,20 @@ void SweepArchive::store(std::size_t chunk, std::span<const model::SegmentResult
       throw base::InternalError("there is no such chunk to store");
     }
     file = std::make_shared<const FileOfCases>(state.layout, state.provenance, state.range(chunk),
-                                               CaseResults{rows, wall_times, swept_values}, true);
+                                               CaseResults{rows, wall_times, swept_values}, true,
+                                               state.workspace);
   } catch (const std::exception& error) {
     throw told(error);
   }
   flush();
   // The other thread calls neither MPI nor HDF5, and its file is released by this one.
-  const Seal seal = seal_of(state.sweep, file->bytes());
+  const Seal seal = seal_of(state.sweep, *file);
   state.written = file;
-  state.writing = std::async(
-      std::launch::async, [bytes = file->bytes(), seal, told, path = state.folder.chunk_path(chunk)] {
+  state.writing =
+      std::async(std::launch::async, [bytes = file->bytes(), places = std::as_bytes(file->places()), seal,
+                                      told, path = state.folder.chunk_path(chunk)] {
         try {
-          write_durably(path, temporary_name(path), {bytes, std::as_bytes(std::span(&seal, 1))});
+          write_durably(path, temporary_name(path), {bytes, places, std::as_bytes(std::span(&seal, 1))});
         } catch (const std::exception& error) {
           throw told(error);
         }
@@ -276,11 +304,9 @@ void SweepArchive::finish() {
     failure.message = error.what();
   }
   throw_if_any_failed(state.comm, failure);
-  agreed(state.comm, state.context(), [&] {
-    if (!state.complete && state.first_rank()) {
-      state.finish();
-    }
-  });
+  if (!state.complete) {
+    state.finish();
+  }
   state.complete = true;
 }
 

@@ -177,6 +177,15 @@ std::vector<Id> fill_file(hid_t file, const Layout& layout, const Provenance& pr
   return made;
 }
 
+Extent place_of_first_chunk(hid_t variable) {
+  const hsize_t offset[2] = {0, 0};  // of as many as the variable has
+  unsigned filters_left_out = 0;
+  haddr_t place = HADDR_UNDEF;
+  hsize_t bytes = 0;
+  check(H5Dget_chunk_info_by_coord(variable, offset, &filters_left_out, &place, &bytes), "find values");
+  return {place, bytes};
+}
+
 void put_chunk(hid_t variable, std::size_t case_in_file, std::span<const std::byte> stream) {
   const hsize_t offset[2] = {case_in_file, 0};  // of as many as the variable has
   check(H5Dwrite_chunk(variable, H5P_DEFAULT, 0, offset, stream.size(), stream.data()), "write values");

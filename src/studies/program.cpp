@@ -101,7 +101,8 @@ ExitCode exit_code(std::span<const std::int64_t> counts) {
   return failed == 0 ? success : untrustworthy;
 }
 
-int sweep(const Request& request, const Designs& designs, const CommandLine& line) {
+// Changes the `outcome` that is to be printed last if it is another than usual.
+int sweep(const Request& request, const Designs& designs, const CommandLine& line, std::string& outcome) {
   const bool printing = petsc::rank(PETSC_COMM_WORLD) == 0;
   const SweepReport report = run_sweep(PETSC_COMM_WORLD, request, designs, provenance_of(request, line));
   const std::string speed =
@@ -119,7 +120,9 @@ int sweep(const Request& request, const Designs& designs, const CommandLine& lin
   MPI_Bcast(counts.rows.data(), static_cast<int>(counts.rows.size()), MPI_INT64_T, 0, PETSC_COMM_WORLD);
   if (printing) {
     print_sweep(request, designs, counts);
-    if (report.taken_up > 0)
+    if (report.already_complete)
+      outcome = request.output + " is complete already; nothing was done";
+    else if (report.taken_up > 0)
       fmt::print("{} designs were in {} from earlier runs\n", report.taken_up, request.output);
     fmt::print("{}", speed);
   }
@@ -192,10 +195,11 @@ int run_program(petsc::Session& session, const CommandLine& line) {
                  request.scene.leg.segments.size());
     return success;
   }
-  const int code = command == Command::sweep ? sweep(request, designs, line) : solve(request, line);
+  std::string outcome = "wrote " + request.output;
+  const int code = command == Command::sweep ? sweep(request, designs, line, outcome) : solve(request, line);
   if (printing && code <= untrustworthy) {
     if (request.comparison == Comparison::paper) fmt::print("{}\n", paper_comparison(request.scene));
-    fmt::print("wrote {}\n", request.output);
+    fmt::print("{}\n", outcome);
   }
   return code;
 }

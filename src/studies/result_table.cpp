@@ -91,7 +91,7 @@ std::string status_summary(std::span<const std::int64_t> counts, const std::stri
   if (failed > 0)
     text += fmt::format(
         "{} of {} segments have no trustworthy result; list case, segment and status of each with\n"
-        "  python3 -c \"import h5py; s = h5py.File('{}')['status'][:]; "
+        "  /usr/bin/python3 -c \"import h5py; s = h5py.File('{}')['status'][:]; "
         "[print(*i, s[tuple(i)]) for i in zip(*(s >= {}).nonzero())]\"\n",
         failed, rows, archive, static_cast<int>(model::Status::no_equilibrium));
   return text;

@@ -180,8 +180,10 @@ std::size_t chunk_designs(const model::Scene& scene, std::int64_t designs) {
   };
   const Size size = scene.fidelity == model::Fidelity::axisym    ? Size{1, 1}
                     : scene.fidelity == model::Fidelity::sliding ? Size{8, 128}
-                                                                 : Size{256, 4096};
-  const std::int64_t some = std::clamp((designs + 15) / 16, size.least, size.most);
+                                                                 : Size{256, 8192};
+  // A multiple of 16 chunks where there are many designs, for as many ranks then have as much to do.
+  const std::int64_t chunks = 16 * ((designs + 16 * size.most - 1) / (16 * size.most));
+  const std::int64_t some = std::clamp((designs + chunks - 1) / chunks, size.least, size.most);
   return static_cast<std::size_t>(std::max(some, (designs + most_chunks - 1) / most_chunks));
 }
 
@@ -192,6 +194,7 @@ SweepReport run_sweep(MPI_Comm comm, const Request& request, const Designs& desi
   if (archive.complete()) {
     SweepReport report;
     report.taken_up = designs.size();
+    report.already_complete = true;
     return report;
   }
   return SweepRun(comm, request, designs, archive).run();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <initializer_list>
 #include <span>
 #include <string>
@@ -26,6 +27,9 @@ std::string temporary_name(const std::string& path);
 // Throws base::InternalError with the system's reason, and then leaves nothing behind.
 void write_durably(const std::string& path, const std::string& temporary,
                    std::initializer_list<std::span<const std::byte>> pieces);
+
+// Writes all of the bytes at a place of an open file. Throws base::InternalError with the system's reason.
+void write_at(int descriptor, std::span<const std::byte> bytes, std::uint64_t place);
 
 // The second half of that: brings a written file to the disk and renames it.
 void publish(const std::string& temporary, const std::string& path);

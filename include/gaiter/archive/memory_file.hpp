@@ -16,7 +16,8 @@ namespace gaiter::archive {
 class MemoryFile {
  public:
   // The newest format takes less room, 27 kB instead of 90 kB for one case; the oldest is read everywhere.
-  explicit MemoryFile(bool newest_format);
+  // `expected`: about as many bytes as it will have, by which its memory grows.
+  explicit MemoryFile(bool newest_format, std::size_t expected = std::size_t{1} << 20);
   ~MemoryFile();
   MemoryFile(const MemoryFile&) = delete;
   MemoryFile& operator=(const MemoryFile&) = delete;

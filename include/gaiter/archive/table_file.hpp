@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -37,6 +38,13 @@ inline constexpr std::size_t most_parts_shown = 250;
 // file.
 std::vector<Id> fill_file(hid_t file, const Layout& layout, const Provenance& provenance,
                           const CaseRange& range, const Unfinished* unfinished = nullptr);
+
+// Where the compressed values of a variable lie in a file.
+struct Extent {
+  std::uint64_t place, bytes;
+};
+
+Extent place_of_first_chunk(hid_t variable);
 
 // Writes the HDF5 chunk of a variable that begins with a case, counted from the file's first one. `stream`:
 // what Compressor makes of the values of a whole chunk.
