@@ -28,10 +28,16 @@ double height_error(const Quadrature& gauss, std::span<const double> pressure, d
     }
   }
   if (!(mean > 0)) return 0;
+  // Upper bound where the pressure is smooth: the slowest fall that any of them shows.
+  constexpr double rough = 0.3;
+  double fall = 0;
+  for (int place = 0; place < coefficients; ++place)
+    fall = std::max(fall, std::pow(std::fabs(last[place]) / mean, 1.0 / (count - coefficients + place)));
+  const double bound = std::fabs(taper) < rough ? std::pow(fall, 2 * count) : 1.0;
   // Rounding fills up what is smaller.
   constexpr double rounding = 1e-15;
   for (double& coefficient : last) coefficient = std::max(std::fabs(coefficient), rounding * mean);
-  return std::min(1.0, caution * gauss_tail(last, count - 1, std::fabs(taper), count) / mean);
+  return std::min(bound, caution * gauss_tail(last, count - 1, std::fabs(taper), count) / mean);
 }
 
 }  // namespace gaiter::physics

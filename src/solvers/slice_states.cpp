@@ -23,9 +23,10 @@ using physics::SliceShape;
 
 namespace {
 
-constexpr double caution = 3;  // of an error estimated from starting values instead of solutions
-constexpr double largest_own_error =
-    1e-4;                                 // that the slices' own pressures tell; beyond, there may be a kink
+constexpr int fewest_to_tell = 6;  // slices laid by the scene whose own pressures are asked for their error
+
+constexpr double caution = 10;  // of an error estimated from starting values instead of solutions
+constexpr double largest_own_error = 1e-7;
 constexpr double smallest_error = 4e-15;  // of a sum of some slices, by rounding
 constexpr int most_check_points = 128;    // over the height, of the rule that an error estimate compares with
 // f' of the scalar equation of a slice: 1 for a bandage that does not stiffen or soften with the leg's
@@ -212,7 +213,7 @@ double SliceModel::height_error(const SegmentTask& task, const Task& own, Fideli
                     own.voltage != 0 ? std::max(at_rest, height_error_of_pieces(task, own, true)) : at_rest);
   }
   const std::size_t count = own.end - own.first;
-  if (count >= physics::fewest_for_height_error &&
+  if (count >= fewest_to_tell &&
       task.scene->discretisation.slice_rule == model::SliceRule::gauss) {
     double error = std::max(smallest_error, height_error_of_pieces(task, own, false));
     if (own.voltage != 0) error = std::max(error, height_error_of_pieces(task, own, true));

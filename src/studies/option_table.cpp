@@ -5,7 +5,6 @@
 #include <cmath>
 #include <iterator>
 #include <stdexcept>
-
 namespace gaiter::studies {
 
 namespace {
@@ -34,8 +33,7 @@ std::vector<Option> make_table() {
        .choices = {"slice", "sliding", "axisym"},
        .default_text = "axisym",
        .doc = "Finest model that -fidelity auto may take, and the one that its errors refer to.",
-       .set = [](Scene& s, std::size_t,
-                 Values v) { s.goal.up_to = static_cast<model::Fidelity>(1 + static_cast<int>(v[0])); }},
+       .set = [](Scene& s, std::size_t, Values v) { s.goal.up_to = model::Fidelity(1 + int(v[0])); }},
       {.name = "axisym_electrostatics",
        .kind = Kind::choice,
        .choices = {"radial", "field", "off"},
@@ -88,8 +86,7 @@ std::vector<Option> make_table() {
        .format = "a file name that ends in .hdf or .vtkhdf",
        .example = "view.hdf",
        .doc = "Fields of the finite elements for ParaView (VTKHDF), in view_rest.hdf and view_actuated.hdf; "
-              "with "
-              "several segments in view_<s>_rest.hdf and view_<s>_actuated.hdf.",
+              "with several segments in view_<s>_rest.hdf and view_<s>_actuated.hdf.",
        .commands = {Command::solve}},
       {.name = "bandage_<s>_length",
        .scope = Scope::one_segment,
