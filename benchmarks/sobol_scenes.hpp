@@ -14,8 +14,9 @@ namespace gaiter::sobol {
 // wall 0.1 to 3 mm (evenly in its logarithm, like the next), stiffness 1e3 to 1e7 Pa (first Ogden modulus;
 // the second in proportion), taper 0 to 20 degrees, voltage 0 to 80 % of the one that takes all pressure from
 // a rigid leg at mid-height, and the paper's six compliances.
-inline std::vector<model::Scene> scenes(int count) {
+inline std::vector<model::Scene> scenes(int count, int skip = 0) {
   boost::random::sobol engine(6);
+  engine.discard(6 * static_cast<boost::uintmax_t>(skip));
   const auto place = [&] { return (static_cast<double>(engine() >> 11) + 0.5) * 0x1p-53; };
   std::vector<model::Scene> all;
   while (static_cast<int>(all.size()) < count) {

@@ -119,7 +119,7 @@ TEST(PaperTable, HasAllItsDigitsOnAnyNumberOfRanks) {
     EXPECT_LE(static_cast<model::Status>(r[17]),
               row.stretch < 2.2 ? model::Status::contact : model::Status::extrapolated);
     EXPECT_GE(r[15], 0);
-    EXPECT_LT(r[22], 1e-7);  // the estimate must not disown digits that are right
+    EXPECT_LT(r[23], 1e-7);  // the estimate must not disown digits that are right
   }
 }
 

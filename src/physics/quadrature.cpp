@@ -51,7 +51,13 @@ double log_error_constant(int points) {
 }  // namespace
 
 double gauss_error_constant(int points) {
-  return std::exp(log_error_constant(points));
+  constexpr int most_kept = 16;
+  static const std::array<double, most_kept> kept = [] {
+    std::array<double, most_kept> values{};
+    for (int n = 0; n < most_kept; ++n) values[n] = std::exp(log_error_constant(n));
+    return values;
+  }();
+  return points < most_kept ? kept[points] : std::exp(log_error_constant(points));
 }
 
 double gauss_error_of_exponential(int points, double rate) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 
 #include "gaiter/physics/height_error.hpp"
 #include "gaiter/physics/segment_forecast.hpp"
@@ -88,18 +89,14 @@ void choose_points(const SegmentForecast& forecast, double tolerance, SlicePlan&
   plan.height_error = forecast.height_error(plan.slice_count);
 }
 
-double tolerance_of(const model::Scene& scene, const SegmentForecast& forecast) {
-  return scene.goal.accuracy / worst_factor(scene.goal, forecast);
-}
-
 }  // namespace
 
-SlicePlan plan_segment(const model::Scene& scene, std::size_t segment) {
+namespace {
+
+SlicePlan plan_for(const model::Scene& scene, std::size_t segment, SegmentForecast& forecast) {
   const model::Goal& goal = scene.goal;
-  SegmentForecast forecast(scene, segment);
   forecast.want(goal.pressure_rest || goal.actuation_drop, goal.actuated());
-  forecast.analyse();
-  const double tolerance = tolerance_of(scene, forecast);
+  const double tolerance = goal.accuracy / worst_factor(goal, forecast);
 
   SlicePlan plan;
   plan.actuated = goal.actuated();
@@ -111,27 +108,35 @@ SlicePlan plan_segment(const model::Scene& scene, std::size_t segment) {
   const bool slices_do = goal.up_to == Fidelity::slice || cylinder ||
                          (goal.up_to == Fidelity::sliding && sliding < shares_model * tolerance);
   const double beyond = goal.up_to == Fidelity::slice || cylinder ? 0 : sliding;
+  plan.change_beyond = sliding;
   if (slices_do) {
     const bool rigid_leg = scene.leg.model == model::LegModel::rigid;
     const bool sure = plan.cuts.empty() && !forecast.open_everywhere();
     plan.fidelity = Fidelity::slice;
     plan.model_error = beyond;
-    const double rigid = beyond + forecast.compliance_error(), first = beyond + forecast.first_order_error();
-    if (rigid_leg || (sure && !goal.volume_change && rigid < shares_model * tolerance)) {
+    const double rigid = forecast.compliance_error(), first = forecast.first_order_error();
+    if (rigid_leg) {
       plan.fidelity = Fidelity::rigid;
-      plan.model_error = rigid_leg ? beyond : rigid;
-    } else if (sure && first < shares_model * tolerance && tolerance >= strict_tolerance) {
+    } else if (sure && !goal.volume_change && beyond + rigid < shares_model * tolerance) {
+      plan.fidelity = Fidelity::rigid;
+      plan.model_error += rigid;
+      plan.change_beyond += rigid;
+    } else if (sure && beyond + first < shares_model * tolerance && tolerance >= strict_tolerance) {
       plan.fidelity = Fidelity::first_order;
-      plan.model_error = first;
+      plan.model_error += first;
+      plan.change_beyond += first;
     }
-    choose_points(forecast, tolerance - plan.model_error, plan);
+    plan.tolerance = tolerance - plan.model_error;
+    choose_points(forecast, plan.tolerance, plan);
   } else if (goal.up_to == Fidelity::sliding) {
     plan.fidelity = Fidelity::sliding;
+    plan.tolerance = tolerance;
     plan.cuts.clear();
     choose_points(forecast, tolerance, plan);
     plan.slice_count = tolerance < 1e-2 ? 24 : 9;
   } else {
     plan.fidelity = Fidelity::axisym;
+    plan.tolerance = tolerance;
     plan.cuts.clear();
     plan.wall_points = 0;
     plan.slice_count = tolerance < 1e-3 ? 2 : 1;  // refinements
@@ -142,13 +147,27 @@ SlicePlan plan_segment(const model::Scene& scene, std::size_t segment) {
   return plan;
 }
 
-// Whether the result is not good enough and the plan could be made finer, and was.
-bool AutoModel::refine(const SegmentTask& task, SlicePlan& plan, const model::SegmentResult& result) const {
-  if (!model::trustworthy(result.status)) return false;
-  SegmentForecast forecast(*task.scene, task.segment);
+}  // namespace
+
+SlicePlan plan_segment(const model::Scene& scene, std::size_t segment) {
+  SegmentForecast forecast(scene, segment);
   forecast.analyse();
-  const double allowed = tolerance_of(*task.scene, forecast) - plan.model_error;
-  if (!(result.discretisation_error > allowed)) return false;
+  return plan_for(scene, segment, forecast);
+}
+
+void plan_segments(std::span<const SegmentTask> tasks, std::vector<SlicePlan>& plans) {
+  thread_local std::vector<SegmentForecast> forecasts;
+  forecasts.clear();
+  for (const SegmentTask& task : tasks) forecasts.emplace_back(*task.scene, task.segment);
+  SegmentForecast::analyse(forecasts);
+  plans.clear();
+  for (std::size_t t = 0; t < tasks.size(); ++t)
+    plans.push_back(plan_for(*tasks[t].scene, tasks[t].segment, forecasts[t]));
+}
+
+// Whether the result is not good enough and the plan could be made finer, and was.
+bool AutoModel::refine(SlicePlan& plan, const model::SegmentResult& result) const {
+  if (!model::trustworthy(result.status) || !(result.discretisation_error > plan.tolerance)) return false;
   const bool axisym = plan.fidelity == Fidelity::axisym, sliding = plan.fidelity == Fidelity::sliding;
   const int most = axisym ? most_refinements : sliding ? most_sliding_slices : most_slices;
   if (plan.slice_count >= most) return false;
@@ -185,22 +204,22 @@ void AutoModel::solve_group(std::span<const SegmentTask> tasks, const std::vecto
 }
 
 std::span<const model::SegmentResult> AutoModel::solve(std::span<const SegmentTask> tasks) {
-  plans_.clear();
+  plan_segments(tasks, plans_);
   results_.assign(tasks.size(), {});
-  std::vector<std::size_t> open;
-  for (std::size_t t = 0; t < tasks.size(); ++t) {
-    plans_.push_back(plan_segment(*tasks[t].scene, tasks[t].segment));
-    open.push_back(t);
-  }
+  std::vector<std::size_t> open(tasks.size());
+  std::iota(open.begin(), open.end(), std::size_t{0});
   while (!open.empty()) {
-    // What is solved together has the same model; sliding slices also the same number.
+    // What is solved together has the same model; sliding slices also the same number. A pack of slices works
+    // on as many points of the wall as the one with the most has.
     std::map<std::pair<Fidelity, int>, std::vector<std::size_t>> groups;
     for (const std::size_t t : open)
-      groups[{plans_[t].fidelity, plans_[t].fidelity == Fidelity::sliding ? plans_[t].slice_count : 0}]
+      groups[{plans_[t].fidelity, plans_[t].fidelity == Fidelity::sliding  ? plans_[t].slice_count
+                                  : plans_[t].fidelity == Fidelity::axisym ? 0
+                                                                           : plans_[t].wall_points}]
           .push_back(t);
     for (const auto& [key, chosen] : groups) solve_group(tasks, chosen);
     std::erase_if(open, [&](std::size_t t) {
-      if (!refine(tasks[t], plans_[t], results_[t])) return true;
+      if (!refine(plans_[t], results_[t])) return true;
       plans_[t].cost += plan_cost(*tasks[t].scene, tasks[t].segment, plans_[t]);
       return false;
     });

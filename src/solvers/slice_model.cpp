@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "gaiter/petsc/session.hpp"
-#include "gaiter/physics/segment_forecast.hpp"
 #include "gaiter/physics/slice_kernel.hpp"
 #include "gaiter/physics/wall_resolution.hpp"
 
@@ -65,6 +64,21 @@ const physics::Quadrature& SliceModel::cut_rule(const SlicePlan& plan) {
   return rule;
 }
 
+// What is known of the errors of tasks that are not planned.
+void SliceModel::forecast(std::span<const SegmentTask> tasks) {
+  using physics::SegmentForecast;
+  forecasts_.clear();
+  auto depth = SegmentForecast::Depth::sliding;
+  for (const SegmentTask& task : tasks) {
+    if (task.plan) continue;
+    const model::Scene& scene = *task.scene;
+    forecasts_.emplace_back(scene, task.segment);
+    if (scene.fidelity != model::Fidelity::slice || scene.discretisation.wall_points > 0)
+      depth = SegmentForecast::Depth::all;
+  }
+  SegmentForecast::analyse(forecasts_, depth);
+}
+
 // The tasks' slices, set up in the memory of the batch before.
 void SliceModel::take(std::span<const SegmentTask> tasks) {
   tasks_.clear();
@@ -72,7 +86,7 @@ void SliceModel::take(std::span<const SegmentTask> tasks) {
   SliceShape shape;
   int most_points = 1;
   bool voltage_somewhere = false, all_newton = true;
-  std::size_t slices = 0;
+  std::size_t slices = 0, forecast = 0;
   for (const SegmentTask& task : tasks) {
     const model::Scene& scene = *task.scene;
     const model::Discretisation& how = scene.discretisation;
@@ -90,10 +104,9 @@ void SliceModel::take(std::span<const SegmentTask> tasks) {
       own.end = slices += static_cast<std::size_t>(how.slice_count);
       own.rule = &height_rule(how.slice_rule, how.slice_count);
     }
+    if (!task.plan) own.forecast = &forecasts_[forecast++];
     if (!task.plan && points > 0) {
-      physics::SegmentForecast forecast(scene, task.segment);
-      forecast.analyse();
-      own.wall_error = forecast.wall_error(points);
+      own.wall_error = own.forecast->wall_error(points);
     } else if (!task.plan) {
       const physics::WallChoice choice = physics::wall_points_for(scene, task.segment, wall_tolerance);
       points = choice.points;
@@ -206,6 +219,7 @@ void SliceModel::solve_first_order() {
 }
 
 std::span<const model::SegmentResult> SliceModel::solve(std::span<const SegmentTask> tasks) {
+  forecast(tasks);
   take(tasks);
   const model::Scene* scene = tasks.empty() ? nullptr : tasks[0].scene;
   const model::Fidelity asked = !scene          ? model::Fidelity::slice

@@ -7,7 +7,6 @@
 #include "gaiter/petsc/session.hpp"
 #include "gaiter/physics/branch.hpp"
 #include "gaiter/physics/height_error.hpp"
-#include "gaiter/physics/segment_forecast.hpp"
 #include "gaiter/physics/slice_kernel.hpp"
 #include "gaiter/solvers/slice_model.hpp"
 
@@ -189,17 +188,16 @@ double SliceModel::height_error_of_pieces(const SegmentTask& task, const Task& o
 
 // What models beyond this one would change, as far as it is known.
 double SliceModel::model_error(const SegmentTask& task, const Task& own, Fidelity fidelity) {
-  physics::SegmentForecast forecast(*task.scene, task.segment);
-  forecast.want(true, own.voltage != 0);
-  const double sliding = forecast.sliding_error();
+  if (task.plan) return task.plan->change_beyond;
+  const double sliding = own.forecast->sliding_error();
   const bool gives_way = task.scene->leg.model != model::LegModel::rigid;
   if (fidelity == Fidelity::slice || !gives_way) return sliding;
   // A leg without compliance has none to correct for.
   const bool known = task.scene->leg.material != model::LegMaterial::compliance ||
                      task.scene->leg.segments[task.segment].compliance.b > 0;
   if (!known) return std::numeric_limits<double>::quiet_NaN();
-  forecast.analyse();
-  return sliding + (fidelity == Fidelity::rigid ? forecast.compliance_error() : forecast.first_order_error());
+  return sliding +
+         (fidelity == Fidelity::rigid ? own.forecast->compliance_error() : own.forecast->first_order_error());
 }
 
 // Relative error of a task's height averages. From its pressures alone, where these leave no doubt.

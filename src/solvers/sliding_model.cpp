@@ -322,7 +322,9 @@ std::vector<model::SegmentResult> SlidingStudy::run() {
         module.length > 0 ? module.length / (2 * M_PI) : leg.mean_radius() / module.stretch;
     const int points = static_cast<int>(wall_rules_[t].nodes.size());
     double wall_error = 0;
-    if (scene.discretisation.wall_points > 0 || tasks_[t].plan) {
+    if (tasks_[t].plan) {
+      wall_error = tasks_[t].plan->wall_error;
+    } else if (scene.discretisation.wall_points > 0) {
       physics::SegmentForecast forecast(scene, tasks_[t].segment);
       forecast.analyse();
       wall_error = forecast.wall_error(points);

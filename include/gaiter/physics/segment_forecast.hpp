@@ -2,22 +2,27 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "gaiter/model/scene.hpp"
+#include "gaiter/physics/forecast_kernel.hpp"
 
 namespace gaiter::physics {
 
-// What a segment will need, before anything is solved: in closed form from its slice at mid-height, so that a
-// plan costs a fraction of a solve. Errors are relative to the segment's mean pressure; they are estimates of
-// the leading order with a factor for caution, and tests/error_estimates.cpp and benchmarks/auto_study
-// measure them against solutions.
+// What a segment will need, before anything is solved: from its slice at mid-height and few points through
+// the wall (forecast_kernel.hpp), many segments at a time, so that a plan costs a fraction of a solve. Errors
+// are relative to the segment's mean pressure; they are estimates of the leading order with a factor for
+// caution, and tests/auto_model.cpp and benchmarks/auto_study measure them against solutions.
 class SegmentForecast {
  public:
   SegmentForecast(const model::Scene& scene, std::size_t segment);
 
-  // Everything but sliding_error() needs this once.
-  void analyse();
+  // Works out all that the functions below tell, or only sliding_error(). All have the same leg material and
+  // number of Ogden terms. What one gets does not depend on the others.
+  enum class Depth { sliding, all };
+  static void analyse(std::span<SegmentForecast> forecasts, Depth depth = Depth::all);
+  void analyse() { analyse({this, 1}); }
 
   // Which states count; both by default. One without voltage is the state at rest.
   void want(bool rest, bool actuated);
@@ -34,7 +39,7 @@ class SegmentForecast {
   // Of the Gauss rule of `points` points through the wall.
   double wall_error(int points) const;
   // Change of the mean pressure if the tube slides without friction (or, held, lies on the slope), to first
-  // order: see sliding_change().
+  // order; NaN: beyond it.
   double sliding_error() const;
 
   // Heights in (0, 1), ascending, at which the bandage leaves the leg, at rest or under voltage; the pressure
@@ -59,32 +64,25 @@ class SegmentForecast {
     double bending = 0;  // |eps''/eps'| of the leg [1/Pa]
     double strain = 0, response = 0;  // eps and eps' [1, 1/Pa]
     double sliding = 0;
-  };
-  struct Power {
-    double size, exponent;  // size R^exponent, a part of the bandage's pressure over the height
+    bool narrow_end_open = false, wide_end_open = false;
   };
 
-  double passive_pressure(double leg_radius, double* slope = nullptr) const;
-  double relief(double leg_radius) const;
-  void strain_law(double pressure, double& strain, double& response, double& bending) const;
-  void resolve_wall(double leg_radius);
+  void put(ForecastInput& input, int lane) const;
+  void take(const ForecastState& found, int lane, State& state, bool voltage) const;
   void find_cuts();
-  void forecast_state(State& state, bool voltage);
-  double sliding_change(bool actuated) const;
+  double net_pressure(double height, bool voltage) const;
   double height_error(const State& state, int slices) const;
   template <typename Measure>
   double worst(Measure&& measure) const;
 
-  const model::Scene& scene_;
-  const model::Segment& leg_;
-  const model::Module& module_;
+  const model::Scene* scene_;
+  const model::Segment* leg_;
+  const model::Module* module_;
   double mean_radius_, taper_;     // taper: half the difference of the radii over the mean radius
   double inner_, gap_, log_area_;  // A [m], R - A at mid-height [m], ln(B^2/A^2)
   double strain_of_none_ = 0;      // of the leg without pressure
   State rest_, actuated_;
-  std::vector<Power> powers_;
-  std::array<double, 4> wall_ratio_{};  // A^2/s at the points of the wall
-  std::array<double, 4> wall_{};        // Legendre coefficients of the stress through the wall
+  std::array<double, forecast_points + 2> height_{}, wall_{};  // see ForecastErrors [Pa]
   std::vector<double> cuts_;
   bool open_everywhere_ = false;
 };

@@ -15,6 +15,9 @@ namespace gaiter::solvers {
 // sliding slices, finite elements. Where the goal's finest model is no better than the forecast allows, that
 // one is taken. The `cost` is a fit to measurements on one core (benchmarks/auto_study).
 SlicePlan plan_segment(const model::Scene& scene, std::size_t segment);
+// The same for many, whose scenes have the same leg material and number of Ogden terms: 64 cost little more
+// than one.
+void plan_segments(std::span<const SegmentTask> tasks, std::vector<SlicePlan>& plans);
 
 // What one solve by a plan should take [s]; planning itself takes planning_cost.
 double plan_cost(const model::Scene& scene, std::size_t segment, const SlicePlan& plan);
@@ -39,7 +42,7 @@ class AutoModel {
 
  private:
   void solve_group(std::span<const SegmentTask> tasks, const std::vector<std::size_t>& chosen);
-  bool refine(const SegmentTask& task, SlicePlan& plan, const model::SegmentResult& result) const;
+  bool refine(SlicePlan& plan, const model::SegmentResult& result) const;
 
   MPI_Comm group_;
   SliceModel slices_;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "gaiter/model/result.hpp"
+#include "gaiter/physics/segment_forecast.hpp"
 #include "gaiter/physics/segment_summary.hpp"
 #include "gaiter/solvers/slice_solver.hpp"
 
@@ -25,8 +26,10 @@ struct SlicePlan {
   double height_error = 0;   // predicted, relative
   double roughness = 0;  // 0 to 1: how little the leg's law lets the pressure's Legendre coefficients fall
   double wall_error = 0;
-  double model_error = 0;
-  double cost = 0;       // predicted [s]
+  double model_error = 0;    // against the finest model that the goal allows
+  double change_beyond = 0;  // by the models beyond this one, allowed or not; NaN: not known
+  double tolerance = 0;      // of the discretisation
+  double cost = 0;           // predicted [s]
   bool actuated = true;  // false: the state under voltage is not wanted
 };
 
@@ -58,12 +61,14 @@ class SliceModel {
     std::size_t first = 0, end = 0;                  // its slices
     const physics::Quadrature* rule = nullptr;       // over the height
     const physics::Quadrature* wall_rule = nullptr;  // through the wall
-    double wall_error = 0, model_error = 0, voltage = 0;
+    double wall_error = 0, voltage = 0;
+    const physics::SegmentForecast* forecast = nullptr;  // without a plan
     int wall_points = 0, pieces = 1;
     double data_limit = 0;  // pressure beyond which results are extrapolated [Pa]
     bool stiffens = false;  // one equilibrium at rest, whatever the pressure
   };
 
+  void forecast(std::span<const SegmentTask> tasks);
   void take(std::span<const SegmentTask> tasks);
   void prepare_solver(model::SliceSolver algorithm, double tolerance);
   void rigid_pressures();
@@ -95,6 +100,7 @@ class SliceModel {
 
   // Of the batch at hand.
   std::vector<Task> tasks_;
+  std::vector<physics::SegmentForecast> forecasts_;  // of the tasks without a plan
   bool energised_ = false;  // somewhere, on any rank
   bool newton_ = true;      // all ranks agree, those without tasks too
   physics::SliceSystem system_;
