@@ -14,10 +14,7 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double largest_exponent = 300;
-constexpr int most_steps = 12;  // of Newton's method for a forecast
-
-// Gauss-Legendre, 2 points on (0, 1).
-constexpr std::array<double, 2> wall_nodes{0.21132486540518713, 0.78867513459481287};
+constexpr int most_steps = 8, steps_at_end = 2;  // of Newton's method for a forecast
 
 GAITER_INLINE double clamped(double x) {
   const double below = x < largest_exponent ? x : largest_exponent;
@@ -39,9 +36,7 @@ GAITER_INLINE void pressing(const ForecastInput& input, bool voltage, const Pack
     swell[i] = excess * (2 + excess);
     pressure[i] = slope[i] = 0;
   }
-  for (const double node : wall_nodes) {
-    Pack ratio;
-    GAITER_EACH ratio[i] = exp(-input.log_area[i] * node);
+  for (const Pack& ratio : input.wall_ratio) {
     GAITER_EACH {
       const double square = swell[i] * ratio[i];
       x[i] = 0.5 * log1p(square);
@@ -110,27 +105,66 @@ GAITER_INLINE void strain_law(const ForecastInput& input, const Pack& pressure, 
   }
 }
 
-GAITER_INLINE void wider_by_strain(const Pack& strain, Pack& wider) {
-  GAITER_EACH wider[i] = -strain[i];
+}  // namespace
+
+namespace {
+
+// Safeguarded Newton's method for the equilibrium of a slice whose radius is 1 + `outline` times the
+// segment's, where `open`; until it is known to a fiftieth of its distance from `first`, or after some steps.
+GAITER_INLINE void equilibrium(const ForecastInput& input, bool voltage, const Pack& outline, int most_steps,
+                               const Pack& limit, Pack& open, const Pack& first, ForecastState& s) {
+  Pack low, high, wider, found, slope, passive, strain, response, bending;
+  GAITER_EACH {
+    low[i] = 0;
+    high[i] = limit[i];
+  }
+  for (int step = 0; step < most_steps; ++step) {
+    strain_law(input, s.pressure, strain, response, bending);
+    GAITER_EACH wider[i] = (1 + outline[i]) * (1 - strain[i]) - 1;
+    pressing(input, voltage, wider, found, slope, passive);
+    double left = 0;
+    GAITER_EACH {
+      const bool counts = open[i] > 0;
+      const double pressure = s.pressure[i], residual = pressure - found[i];
+      low[i] = counts && residual < 0 ? pressure : low[i];
+      high[i] = counts && !(residual < 0) ? pressure : high[i];
+      const double yielding = slope[i] * response[i] / larger(1 - strain[i], 0.05);
+      // Newton's step for ln P = ln P_t where the two are far apart, else for P = P_t.
+      const bool far = found[i] > 4 * pressure || (found[i] > 0 && pressure > 4 * found[i]);
+      const double ratio = found[i] > 1e-300 * pressure ? found[i] / pressure : 1e-300;
+      const double in_log = pressure * exp(log(ratio) / (1 + yielding / ratio));
+      double next = far ? in_log : pressure - residual / (1 + yielding);
+      const double middle = low[i] > 0 ? std::sqrt(low[i] * high[i]) : 0.5 * (low[i] + high[i]);
+      next = next > low[i] && next < high[i] ? next : middle;
+      const double change = std::fabs(next - pressure);
+      const double enough = larger(1e-9 * next, 0.02 * std::fabs(next - first[i]));
+      s.pressure[i] = counts ? next : pressure;
+      s.strain[i] = counts ? strain[i] + response[i] * (next - pressure) : s.strain[i];
+      s.response[i] = counts ? response[i] : s.response[i];
+      s.slope[i] = counts ? slope[i] : s.slope[i];
+      s.passive[i] = counts ? passive[i] : s.passive[i];
+      s.gain[i] = counts ? (yielding > 0 ? yielding : 0) : s.gain[i];
+      open[i] = change < enough ? 0 : open[i];
+      left += open[i];
+    }
+    if (!(left > 0)) break;
+  }
 }
 
 }  // namespace
 
-// The equilibrium is searched for from the start that slices have (start_at_rest), whose distance from it is
-// what the first order leaves out.
 GAITER_MULTIVERSION
-void forecast_state(const ForecastInput& input, bool voltage, ForecastState& s) {
-  Pack wider, unused, none, low, high, open, found;
+void ForecastInput::close() {
+  // Gauss-Legendre, 2 points on (0, 1).
+  constexpr std::array<double, 2> nodes{0.21132486540518713, 0.78867513459481287};
+  for (std::size_t j = 0; j < nodes.size(); ++j) GAITER_EACH wall_ratio[j][i] = exp(-log_area[i] * nodes[j]);
+}
+
+// The first order is the start that slices have (start_at_rest).
+GAITER_MULTIVERSION
+void forecast_state(const ForecastInput& input, bool voltage, const ForecastState* rest, ForecastState& s) {
+  Pack wider, unused, none, open, found, bending, slope;
   GAITER_EACH none[i] = 0;
-  strain_law(input, none, s.strain, s.response, s.bending);
-  for (const bool upper : {false, true}) {
-    if (!voltage) break;  // the gap tells
-    GAITER_EACH {
-      const double strain = input.gives_way[i] > 0 ? s.strain[i] : 0;
-      wider[i] = (1 + (upper ? input.taper[i] : -input.taper[i])) * (1 - strain) - 1;
-    }
-    pressing(input, voltage, wider, upper ? s.highest : s.lowest, unused, found);
-  }
   pressing(input, voltage, none, s.rigid, s.slope, s.passive);
   GAITER_EACH {
     const double limit = input.pressure_limit[i], rigid = s.rigid[i];
@@ -138,7 +172,7 @@ void forecast_state(const ForecastInput& input, bool voltage, ForecastState& s) 
     s.pressure[i] = rigid < limit ? rigid : limit;
     if (!(rigid > 0)) s.pressure[i] = 0;
   }
-  strain_law(input, s.pressure, s.strain, s.response, s.bending);
+  strain_law(input, s.pressure, s.strain, s.response, bending);
   GAITER_EACH {
     const double limit = input.pressure_limit[i], rigid = s.rigid[i], pressure = s.pressure[i];
     const double k = rigid > 0 ? s.slope[i] / rigid : 0;
@@ -146,50 +180,62 @@ void forecast_state(const ForecastInput& input, bool voltage, ForecastState& s) 
     const double moved = pressure + step > 0 ? pressure + step : 0.5 * pressure;
     s.first[i] = open[i] > 0 ? (rigid <= limit && moved < limit ? moved : pressure) : rigid;
     s.pressure[i] = s.first[i];
-    low[i] = 0;
-    high[i] = limit;
-    if (!(open[i] > 0)) s.strain[i] = s.response[i] = s.bending[i] = s.gain[i] = 0;
+    s.gain[i] = 0;
+    if (!(open[i] > 0)) s.strain[i] = s.response[i] = 0;
   }
-  for (int step = 0; step < most_steps; ++step) {
-    Pack strain, response, bending, slope, passive;
-    strain_law(input, s.pressure, strain, response, bending);
-    wider_by_strain(strain, wider);
-    pressing(input, voltage, wider, found, slope, passive);
-    double left = 0;
+  if (rest)
     GAITER_EACH {
-      const double pressure = s.pressure[i], residual = pressure - found[i];
-      if (open[i] > 0) {
-        (residual < 0 ? low[i] : high[i]) = pressure;
-        const double yielding = slope[i] * response[i] / larger(1 - strain[i], 0.05);
-        // Newton's step for ln P = ln P_t where the two are far apart, else for P = P_t.
-        const bool far = found[i] > 4 * pressure || (found[i] > 0 && pressure > 4 * found[i]);
-        const double ratio = found[i] > 1e-300 ? found[i] / pressure : 1e-300;
-        double next =
-            far ? pressure * exp(log(ratio) / (1 + yielding / ratio)) : pressure - residual / (1 + yielding);
-        if (!(next > low[i] && next < high[i]))
-          next = low[i] > 0 ? std::sqrt(low[i] * high[i]) : 0.5 * (low[i] + high[i]);
-        const double change = std::fabs(next - pressure);
-        const double enough = larger(1e-9 * next, 0.02 * std::fabs(next - s.first[i]));
-        s.pressure[i] = next;
-        s.strain[i] = strain[i] + response[i] * (next - pressure);
-        s.response[i] = response[i];
-        s.bending[i] = bending[i];
-        s.slope[i] = slope[i];
-        s.passive[i] = passive[i];
-        s.gain[i] = yielding > 0 ? yielding : 0;
-        if (change < enough) open[i] = 0;
-      }
-      left += open[i];
+      // From the state at rest, by the relief that the leg's giving way leaves.
+      const double relieved = rest->pressure[i] - (rest->rigid[i] - s.rigid[i]) / (1 + rest->gain[i]);
+      const bool better = relieved > 0.3 * rest->pressure[i] && relieved < input.pressure_limit[i];
+      s.pressure[i] = open[i] > 0 && better ? relieved : s.pressure[i];
     }
-    if (!(left > 0)) break;
+  equilibrium(input, voltage, none, most_steps, input.pressure_limit, open, s.first, s);
+
+  // The ends: which are open, and the pressure at the narrow one, at which the leg is softest.
+  strain_law(input, none, wider, unused, bending);
+  Pack strain_of_none = wider, outline;
+  GAITER_EACH {
+    strain_of_none[i] = input.gives_way[i] > 0 ? strain_of_none[i] : 0;
+    outline[i] = -std::fabs(input.taper[i]);
+    wider[i] = (1 + outline[i]) * (1 - strain_of_none[i]) - 1;
   }
+  pressing(input, voltage, wider, s.narrow_net, unused, found);
+  s.wide_net = s.narrow_net;  // where the narrow end touches, so does the other
+  double open_ends = 0;
+  GAITER_EACH open_ends += s.narrow_net[i] > 0 ? 0 : 1;
+  if (open_ends > 0) {
+    GAITER_EACH wider[i] = (1 - outline[i]) * (1 - strain_of_none[i]) - 1;
+    pressing(input, voltage, wider, unused, slope, found);
+    GAITER_EACH s.wide_net[i] = s.narrow_net[i] > 0 ? s.narrow_net[i] : unused[i];
+  }
+  ForecastState& end = s;  // its pressure moves on, and comes back
+  const Pack pressure = s.pressure, strain = s.strain, response = s.response, passive = s.passive,
+             gain = s.gain;
+  Pack limit;
+  slope = s.slope;
+  GAITER_EACH {
+    open[i] = s.narrow_net[i] > 0 && s.pressure[i] > 0 && input.gives_way[i] > 0 ? 1 : 0;
+    const double net = larger(s.narrow_net[i], 0), middle = s.pressure[i];
+    limit[i] = net < middle ? net : middle;
+    const double share = s.rigid[i] > 0 && net < s.rigid[i] ? net / s.rigid[i] : 1;
+    end.pressure[i] = larger(0.999 * limit[i] * share, 1e-300);
+  }
+  equilibrium(input, voltage, outline, steps_at_end, limit, open, limit, end);
+  GAITER_EACH s.narrow[i] = input.gives_way[i] > 0 ? end.pressure[i] : larger(s.narrow_net[i], 0);
+  s.pressure = pressure;
+  s.strain = strain;
+  s.response = response;
+  s.slope = slope;
+  s.passive = passive;
+  s.gain = gain;
 }
 
 // Through the wall, over t = ln(B.../A) of the reference radius squared, a power m of w = 1/lambda^2 obeys
 //   d/dt sum_j c_j w^(m+j) = L sum_j (m+j) c_j (w^(m+j) - w^(m+j+1)),
 // exactly; over the height it is taken for a power of the radius.
 GAITER_MULTIVERSION
-void forecast_errors(const ForecastInput& input, const ForecastState& rest, ForecastErrors& errors) {
+void forecast_errors(const ForecastInput& input, const Pack& strain, ForecastErrors& errors) {
   constexpr int derivatives = 6;
   static const auto constants = [] {
     std::array<double, forecast_points + 2> all{};
@@ -201,13 +247,13 @@ void forecast_errors(const ForecastInput& input, const ForecastState& rest, Fore
   Pack x, w, share;
   GAITER_EACH {
     height[0][i] = 0;
-    const double radius = 1 + input.gap[i] - input.leg_radius[i] * rest.strain[i];
+    const double radius = 1 + input.gap[i] - input.leg_radius[i] * strain[i];
     const double swell = radius * radius - 1, middle = exp(-0.5 * input.log_area[i]);
     const double square = larger(swell * middle, -0.999);
     x[i] = 0.5 * log1p(square);
     w[i] = 1 / (1 + square);
     // d ln lambda / d ln R at mid-wall.
-    share[i] = radius * middle * w[i] * input.leg_radius[i] * (1 - rest.strain[i]);
+    share[i] = radius * middle * w[i] * input.leg_radius[i] * (1 - strain[i]);
   }
   for (int n = 1; n < static_cast<int>(height.size()); ++n) GAITER_EACH height[n][i] = 0;
   for (const ForecastInput::Term& term : input.terms)

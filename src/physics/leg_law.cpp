@@ -18,16 +18,9 @@ LegConstants leg_constants(const model::Leg& leg, const model::Segment& segment)
 }
 
 double pressure_bound(const model::Leg& leg, const LegConstants& constants, double strain) {
-  constexpr double rounding = 1 + 1e-9;
-  if (leg.material == model::LegMaterial::neo_hookean) {
-    const double reached = strain < 0.99 ? strain : 0.99;
-    const double bulk = constants.value[0], shear = constants.value[1];
-    return reached * (2 - reached) * (bulk + shear * std::pow(1 - reached, -10.0 / 3)) * rounding;
-  }
-  // a exp(bP) = strain - c exp(dP), where c <= 0 and the second exponential is between 0 and 1.
-  const double a = constants.value[0], strain_of_none = constants.value[2];  // a + c
-  const double reached = strain < 1 ? strain : 1;
-  return reached <= strain_of_none ? 0 : std::log1p((reached - strain_of_none) / a) * rounding;
+  const auto& law = constants.value;
+  return leg.material == model::LegMaterial::neo_hookean ? neo_hookean_pressure_bound(law[0], law[1], strain)
+                                                         : strain_law_pressure_bound(law[0], law[2], strain);
 }
 
 }  // namespace gaiter::physics

@@ -32,39 +32,35 @@ Quadrature slice_quadrature(model::SliceRule rule, int slices) {
   return midpoints;
 }
 
-namespace {
-
-double log_error_constant(int points) {
-  // A sweep asks for every design: the logarithms of the factorials are kept.
-  constexpr int most_kept = 128;
-  const auto log_factorials = [](double n) {
+double gauss_log_constant(int points) {
+  // A sweep asks for every design: they are kept.
+  constexpr int most_kept = 129;
+  const auto value = [](double n) {
     return 4 * std::lgamma(n + 1) - std::log(2 * n + 1) - 3 * std::lgamma(2 * n + 1);
   };
   static const std::array<double, most_kept> kept = [&] {
     std::array<double, most_kept> values{};
-    for (int n = 0; n < most_kept; ++n) values[n] = log_factorials(n);
+    for (int n = 0; n < most_kept; ++n) values[n] = value(n);
     return values;
   }();
-  return points < most_kept ? kept[points] : log_factorials(points);
+  return points < most_kept ? kept[points] : value(points);
 }
-
-}  // namespace
 
 double gauss_error_constant(int points) {
   constexpr int most_kept = 16;
   static const std::array<double, most_kept> kept = [] {
     std::array<double, most_kept> values{};
-    for (int n = 0; n < most_kept; ++n) values[n] = std::exp(log_error_constant(n));
+    for (int n = 0; n < most_kept; ++n) values[n] = std::exp(gauss_log_constant(n));
     return values;
   }();
-  return points < most_kept ? kept[points] : std::exp(log_error_constant(points));
+  return points < most_kept ? kept[points] : std::exp(gauss_log_constant(points));
 }
 
 double gauss_error_of_exponential(int points, double rate) {
   // |error| = rate^(2n) (n!)^4 / ((2n+1) ((2n)!)^3) exp(rate x) at some x of the interval; the integral
   // itself is at least exp(rate x) (1 - exp(-rate)) / rate for the largest of these.
   if (rate == 0) return 0;
-  const double log_error = 2.0 * points * std::log(rate) + log_error_constant(points);
+  const double log_error = 2.0 * points * std::log(rate) + gauss_log_constant(points);
   return std::min(1.0, std::exp(log_error) * rate / -std::expm1(-rate));
 }
 

@@ -15,25 +15,11 @@ namespace {
 
 constexpr double caution = 2;
 constexpr double caution_of_wall = 1.2;
+constexpr double caution_of_leg = 6;
 constexpr double caution_of_mean = 1.3;  // where the value at mid-height stands for the mean over the height
 constexpr double vacuum_permittivity = 8.8541878128e-12;  // [F/m]
 
 }  // namespace
-
-double gauss_tail(const std::array<double, 3>& last, int degree, double closeness, int points) {
-  const double before = std::fabs(last[0]), middle = std::fabs(last[1]), end = std::fabs(last[2]);
-  // The size of the last coefficient, which may be small by chance, as its two forerunners would have it.
-  const double falling = (2.0 * degree - 3) / (2.0 * degree - 1);
-  const double expected = before > 0 ? falling * middle * std::min(1.0, middle / before) : middle;
-  double size = std::max(end, 0.5 * expected);
-  if (!(size > 0)) return 0;
-  const double ratio = middle > 0 ? std::min(size / middle, 1.0) : 1.0;
-  const double rate = ratio * (2 * degree - 1);
-  for (int k = degree + 1; k <= 2 * points; ++k)
-    size *= std::min(1.0, (rate + (k - degree) * closeness) / (2 * k - 1));
-  // The rule gives at most half for the mean of the Legendre polynomial of degree 2n, which is 0.
-  return 0.5 * size;
-}
 
 SegmentForecast::SegmentForecast(const model::Scene& scene, std::size_t segment)
     : scene_(&scene), leg_(&scene.leg.segments[segment]), module_(&scene.bandage.modules[segment]) {
@@ -79,26 +65,19 @@ void SegmentForecast::put(ForecastInput& input, int lane) const {
   }
 }
 
-void SegmentForecast::take(const ForecastState& found, int lane, State& state, bool voltage) const {
+void SegmentForecast::take(const ForecastState& found, int lane, State& state) const {
   state.rigid = found.rigid[lane];
   state.first = found.first[lane];
   state.pressure = found.pressure[lane];
   state.passive = found.passive[lane];
   state.slope = found.slope[lane];
   state.gain = found.gain[lane];
-  state.bending = found.bending[lane];
   state.strain = found.strain[lane];
   state.response = found.response[lane];
-  if (voltage) {
-    state.narrow_end_open = !(found.lowest[lane] > 0);
-    state.wide_end_open = !(found.highest[lane] > 0);
-    return;
-  }
-  const auto open = [&](double taper) {
-    return !(gap_ + mean_radius_ * ((1 + taper) * (1 - strain_of_none_) - 1) > 0);
-  };
-  state.narrow_end_open = open(-taper_);
-  state.wide_end_open = open(taper_);
+  state.narrow = found.narrow[lane];
+  const bool widens = taper_ >= 0;
+  state.lower_end_open = !((widens ? found.narrow_net : found.wide_net)[lane] > 0);
+  state.upper_end_open = !((widens ? found.wide_net : found.narrow_net)[lane] > 0);
 }
 
 void SegmentForecast::analyse(std::span<SegmentForecast> forecasts, Depth depth) {
@@ -115,6 +94,7 @@ void SegmentForecast::analyse(std::span<SegmentForecast> forecasts, Depth depth)
     bool voltage = false;
     // The last pack's spare places repeat the last segment.
     for (int lane = 0; lane < pack_width; ++lane) some[std::min(lane, count - 1)].put(input, lane);
+    input.close();
     for (const SegmentForecast& one : some) voltage = voltage || one.module_->voltage != 0;
     Pack at_rest, under_voltage;
     forecast_sliding(input, false, at_rest);
@@ -124,9 +104,13 @@ void SegmentForecast::analyse(std::span<SegmentForecast> forecasts, Depth depth)
       if (some[lane].module_->voltage != 0) some[lane].actuated_.sliding = under_voltage[lane];
     }
     if (depth == Depth::sliding) continue;
-    forecast_state(input, false, rest);
-    if (voltage) forecast_state(input, true, actuated);
-    forecast_errors(input, rest, errors);
+    forecast_state(input, false, nullptr, rest);
+    if (voltage) forecast_state(input, true, &rest, actuated);
+    // Where the bandage is stretched most: the leg is wider under voltage.
+    Pack strain = rest.strain;
+    for (int lane = 0; voltage && lane < pack_width; ++lane)
+      if (actuated.pressure[lane] > 0) strain[lane] = std::min(strain[lane], actuated.strain[lane]);
+    forecast_errors(input, strain, errors);
     for (int lane = 0; lane < count; ++lane) {
       SegmentForecast& one = some[lane];
       const model::Leg& leg = one.scene_->leg;
@@ -134,12 +118,14 @@ void SegmentForecast::analyse(std::span<SegmentForecast> forecasts, Depth depth)
           leg.model == model::LegModel::rigid || leg.material == model::LegMaterial::neo_hookean
               ? 0
               : input.leg[0][lane] + input.leg[2][lane];
-      one.take(rest, lane, one.rest_, false);
-      if (one.module_->voltage != 0) one.take(actuated, lane, one.actuated_, true);
+      one.take(rest, lane, one.rest_);
+      if (one.module_->voltage != 0) one.take(actuated, lane, one.actuated_);
       for (std::size_t n = 0; n < one.wall_.size(); ++n) {
         one.height_[n] = errors.height[n][lane];
         one.wall_[n] = errors.wall[n][lane];
       }
+      one.find_poles(one.rest_);
+      if (one.module_->voltage != 0) one.find_poles(one.actuated_);
       one.find_cuts();
     }
   }
@@ -179,12 +165,12 @@ double SegmentForecast::net_pressure(double height, bool voltage) const {
 void SegmentForecast::find_cuts() {
   cuts_.clear();
   const bool voltage = module_->voltage != 0;
-  open_everywhere_ = rest_.narrow_end_open && rest_.wide_end_open &&
-                     (!voltage || (actuated_.narrow_end_open && actuated_.wide_end_open));
+  open_everywhere_ = rest_.lower_end_open && rest_.upper_end_open &&
+                     (!voltage || (actuated_.lower_end_open && actuated_.upper_end_open));
   for (const bool under_voltage : {false, true}) {
     const State& state = under_voltage ? actuated_ : rest_;
     if (under_voltage && !voltage) break;
-    if (state.narrow_end_open == state.wide_end_open) continue;
+    if (state.lower_end_open == state.upper_end_open) continue;
     double from = 0, to = 1;
     const bool low = net_pressure(0, under_voltage) > 0;
     if (low == (net_pressure(1, under_voltage) > 0)) continue;
@@ -208,18 +194,26 @@ double SegmentForecast::worst(Measure&& measure) const {
   return error;
 }
 
+// An error that goes with a power of the pressure is larger at the wide end than it is small at the narrow
+// one: the mean over the height over the value in the middle.
+double SegmentForecast::spread(const State& s, double power) const {
+  const double x = std::min(power * std::fabs(taper_ * s.slope / s.pressure), 20.0);
+  return x > 1e-3 ? std::sinh(x) / x : 1.0;
+}
+
 double SegmentForecast::compliance_error() const {
-  return worst([](const State& s) {
-    return s.rigid > 0 ? caution_of_mean * std::fabs(s.rigid / s.pressure - 1) : 0.0;
+  return worst([&](const State& s) {
+    return s.rigid > 0 ? caution_of_mean * spread(s, 1) * std::fabs(s.rigid / s.pressure - 1) : 0.0;
   });
 }
 
 double SegmentForecast::first_order_error() const {
   return worst([&](const State& s) {
     if (!(s.rigid > 0)) return 0.0;
-    // It goes with a high power of the pressure, so that the wide end outweighs the middle.
-    const double spread = std::min(3 * std::fabs(taper_ * s.slope / s.pressure), 20.0);
-    return caution * std::fabs(s.first / s.pressure - 1) * (spread > 1e-3 ? std::sinh(spread) / spread : 1.0);
+    // It may be small by chance in the middle.
+    const double fall = std::log(s.rigid / s.pressure);
+    const double typical = 0.3 * fall * fall;
+    return spread(s, 3) * std::max(caution * std::fabs(s.first / s.pressure - 1), typical);
   });
 }
 
@@ -227,16 +221,48 @@ double SegmentForecast::gain() const {
   return worst([](const State& s) { return s.gain; });
 }
 
+// The pressure has singularities over the (complex) height where the gain is -1, and Gauss's rule converges as
+// the ellipse through them says. With an exponential of rate d in the leg's law these lie where the gain that
+// it gives is 1 in size, pi/|d| off the real pressures; the part that they have in the pressure is 1/|d|.
+void SegmentForecast::find_poles(State& s) const {
+  const model::Leg& leg = scene_->leg;
+  s.poles = {};
+  if (leg.model == model::LegModel::rigid || !(s.pressure > 0)) return;
+  const double half = std::max(s.pressure - s.narrow, 1e-3 * s.pressure);
+  const auto pole_of = [&](double size, double rate) -> Pole {
+    if (!(size != 0 && rate != 0)) return {};
+    const double strength = std::fabs(s.slope * size * rate);
+    const double where = -std::log(std::max(strength, 1e-300)) / rate;  // pressure at which the gain is 1
+    // |z + sqrt(z^2 - 1)| by the sum of the distances of z from -1 and 1.
+    const double x = (where - s.pressure) / half, y = M_PI / (rate * half);
+    const double sum = 0.5 * (std::sqrt((x + 1) * (x + 1) + y * y) + std::sqrt((x - 1) * (x - 1) + y * y));
+    const double ellipse = sum + std::sqrt(std::max(sum * sum - 1, 0.0));
+    return {caution_of_leg / (std::fabs(rate) * s.pressure), 1 / (ellipse * ellipse)};
+  };
+  if (leg.material == model::LegMaterial::neo_hookean) {
+    s.poles[0] = pole_of(1, 2 * s.response);
+  } else {
+    const model::Compliance& law = leg_->compliance;
+    s.poles[0] = pole_of(law.a, law.b);
+    s.poles[1] = pole_of(leg.variant == model::ComplianceVariant::anchored ? -law.a : law.c, law.d);
+  }
+}
+
+double SegmentForecast::leg_error(const State& s, int n) const {
+  double error = 0;
+  for (const Pole& pole : s.poles) {
+    double part = pole.size;
+    for (int k = 0; k < n; ++k) part *= pole.fall;
+    error += part;
+  }
+  return error;
+}
+
 double SegmentForecast::height_error(const State& s, int n) const {
   if (!(s.rigid > 0) || taper_ == 0) return 0;
   const int known = std::min(n, forecast_points);
-  const double softened = 1 / (1 + s.gain);
-  const double rise = 2 * s.slope * softened * std::fabs(taper_);  // of the pressure over the height
-  const double fall = s.bending * rise;
-  double leg = s.gain * softened * rise * fall;
-  for (int k = 1; k < known; ++k) leg *= fall * fall;
-  leg *= gauss_error_constant(known);
-  return caution * ((height_[known] + height_[known + 1]) * softened + leg) / s.pressure;
+  const double bandage = caution * (height_[known] + height_[known + 1]) / (s.pressure * (1 + s.gain));
+  return bandage + leg_error(s, n);
 }
 
 double SegmentForecast::height_error(int slices) const {
@@ -254,10 +280,10 @@ double SegmentForecast::wall_error(int points) const {
     error = wall_[forecast_points] *
             std::pow(wall_[forecast_points + 1] / wall_[forecast_points], points - forecast_points);
   }
-  const double passive = caution_of_wall * error / wall_[0];
   // P_a is closed form: the error is the passive pressure's.
-  return worst(
-      [&](const State& s) { return s.rigid > 0 ? passive * s.passive / s.pressure / (1 + s.gain) : 0.0; });
+  return worst([&](const State& s) {
+    return s.rigid > 0 ? caution_of_wall * error / (s.pressure * (1 + s.gain)) : 0.0;
+  });
 }
 
 double SegmentForecast::sliding_error() const {

@@ -1,58 +1,86 @@
 // SPDX-License-Identifier: BSD-2-Clause
 #include "gaiter/physics/segment_summary.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace gaiter::physics {
 
-model::SegmentResult summarise(std::span<const SliceOutcome> slices, const Quadrature& rule, double height,
-                               double quadrature_error) {
-  model::SegmentResult result;
-  const auto mean = [&](auto&& quantity) {
-    double sum = 0;
-    for (std::size_t k = 0; k < slices.size(); ++k) sum += rule.weights[k] * quantity(slices[k]);
-    return sum;
-  };
-  const auto square = [](double r) { return M_PI * r * r; };
-  for (const SliceOutcome& slice : slices) {
-    result.status = std::max(result.status, slice.status);
-    result.iterations = std::max(result.iterations, slice.iterations);
-    result.electric_field_max = std::max(result.electric_field_max, slice.electric_field);
+#define GAITER_EACH for (int i = 0; i < pack_width; ++i)
+
+SegmentSummary::SegmentSummary(std::span<const SliceOutcomes> slices, std::span<const Pack> weights,
+                               const SegmentPack& segments) {
+  for (std::size_t k = 0; k < slices.size(); ++k) add(slices[k], weights[k]);
+  finish(segments);
+}
+
+GAITER_MULTIVERSION
+void SegmentSummary::add(const SliceOutcomes& slice, const Pack& weights) {
+  GAITER_EACH {
+    status_[i] = slice.status[i] > status_[i] ? slice.status[i] : status_[i];
+    iterations_[i] = slice.iterations[i] > iterations_[i] ? slice.iterations[i] : iterations_[i];
+    field_[i] = slice.electric_field[i] > field_[i] ? slice.electric_field[i] : field_[i];
+    rest_rigid_[i] += weights[i] * slice.pressure_rest_rigid[i];
+    actuated_rigid_[i] += weights[i] * slice.pressure_actuated_rigid[i];
+    rest_[i] += weights[i] * slice.pressure_rest[i];
+    actuated_[i] += weights[i] * slice.pressure_actuated[i];
+    actuation_[i] += weights[i] * slice.actuation_pressure[i];
   }
-  result.pressure_rest_rigid = mean([](const auto& s) { return s.pressure_rest_rigid; });
-  result.pressure_actuated_rigid = mean([](const auto& s) { return s.pressure_actuated_rigid; });
-  result.volume_initial = height * mean([&](const auto& s) { return square(s.leg_radius); });
+  GAITER_EACH {
+    rest_force_[i] += weights[i] * slice.pressure_rest[i] * slice.radius_rest[i];
+    actuated_force_[i] += weights[i] * slice.pressure_actuated[i] * slice.radius_actuated[i];
+    rest_area_[i] += weights[i] * slice.bandage_radius_rest[i];
+    actuated_area_[i] += weights[i] * slice.bandage_radius_actuated[i];
+  }
+  GAITER_EACH {
+    const double initial = slice.leg_radius[i] * slice.leg_radius[i];
+    const double strain = slice.strain_actuated[i];
+    volume_initial_[i] += weights[i] * initial;
+    volume_rest_[i] += weights[i] * slice.radius_rest[i] * slice.radius_rest[i];
+    volume_actuated_[i] += weights[i] * slice.radius_actuated[i] * slice.radius_actuated[i];
+    // Formed from the strains, which a small change needs.
+    volume_change_[i] += weights[i] * initial * strain * (2 - strain);
+    radius_[i] += weights[i] * slice.radius_actuated[i];
+  }
+}
+
+GAITER_MULTIVERSION
+void SegmentSummary::finish(const SegmentPack& segments) {
+  const Pack &height = segments.constants.height, &reference = segments.constants.reference_radius;
+  GAITER_EACH {
+    const double area = M_PI * height[i];
+    volume_change_[i] /= volume_initial_[i];
+    volume_initial_[i] *= area;
+    volume_rest_[i] *= area;
+    volume_actuated_[i] *= area;
+    stretch_[i] = rest_area_[i] / reference[i];
+    rest_force_[i] /= rest_area_[i];
+    actuated_force_[i] /= actuated_area_[i];
+  }
+}
+
+model::SegmentResult SegmentSummary::result(int i, double quadrature_error) const {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  if (!model::trustworthy(result.status)) {
-    result.pressure_rest = result.pressure_actuated = result.pressure_rest_area_mean = none;
-    result.pressure_actuated_area_mean = result.actuation_pressure = none;
-    model::derive_changes(result);
-    result.volume_rest = result.volume_actuated = result.volume_change = result.radius_actuated = none;
-    result.stretch_actual = result.electric_field_max = result.discretisation_error = none;
-    result.error_estimate = result.model_error = none;
-    return result;
-  }
-  if (result.status == model::Status::pulled_in) result.electric_field_max = none;
-  result.pressure_rest = mean([](const auto& s) { return s.pressure_rest; });
-  result.pressure_actuated = mean([](const auto& s) { return s.pressure_actuated; });
-  result.pressure_rest_area_mean = mean([](const auto& s) { return s.pressure_rest * s.radius_rest; }) /
-                                   mean([](const auto& s) { return s.bandage_radius_rest; });
-  result.pressure_actuated_area_mean =
-      mean([](const auto& s) { return s.pressure_actuated * s.radius_actuated; }) /
-      mean([](const auto& s) { return s.bandage_radius_actuated; });
+  const auto status = static_cast<model::Status>(static_cast<int>(status_[i]));
+  model::SegmentResult result = model::without_numbers(status, model::Fidelity::slice);
+  result.slip_max = 0;
+  result.iterations = static_cast<int>(iterations_[i]);
+  result.pressure_rest_rigid = rest_rigid_[i];
+  result.pressure_actuated_rigid = actuated_rigid_[i];
+  result.volume_initial = volume_initial_[i];
+  if (!model::trustworthy(status)) return result;
+  result.pressure_rest = rest_[i];
+  result.pressure_actuated = actuated_[i];
+  result.pressure_rest_area_mean = rest_force_[i];
+  result.pressure_actuated_area_mean = actuated_force_[i];
   model::derive_changes(result);
-  result.actuation_pressure = mean([](const auto& s) { return s.actuation_pressure; });
-  result.volume_rest = height * mean([&](const auto& s) { return square(s.radius_rest); });
-  result.volume_actuated = height * mean([&](const auto& s) { return square(s.radius_actuated); });
-  // Formed from the strains, which a small change needs.
-  result.volume_change = height * mean([&](const auto& s) {
-                           return square(s.leg_radius) * s.strain_actuated * (2 - s.strain_actuated);
-                         }) /
-                         result.volume_initial;
-  result.radius_actuated = mean([](const auto& s) { return s.radius_actuated; });
-  result.stretch_actual = mean([](const auto& s) { return s.bandage_radius_rest / s.reference_radius; });
+  result.actuation_pressure = actuation_[i];
+  result.volume_rest = volume_rest_[i];
+  result.volume_actuated = volume_actuated_[i];
+  result.volume_change = volume_change_[i];
+  result.radius_actuated = radius_[i];
+  result.stretch_actual = stretch_[i];
+  result.electric_field_max = status == model::Status::pulled_in ? none : field_[i];
   result.discretisation_error = quadrature_error;
   model::derive_error(result);
   return result;

@@ -108,6 +108,10 @@ void bandage_pressure(const SliceShape& shape, const Pack* rows, const Pack& str
   GAITER_EACH pressure[i] = slope[i] = 0;
   for (int j = 0; j < points; ++j) {
     const Pack& ratio = wall[j];  // A^2/s
+    // Thin walls need fewer points than the thickest of the system.
+    int weighted = 0;
+    GAITER_EACH weighted |= weight[j][i] != 0;
+    if (weighted == 0) break;
     GAITER_EACH {
       const double square = swell[i] * ratio[i];  // lambda^2 - 1
       log_stretch[i] = 0.5 * log1p(square);

@@ -13,10 +13,10 @@ constexpr double far =
 
 #define GAITER_EACH for (int i = 0; i < pack_width; ++i)
 
-inline __attribute__((always_inline)) double any(const Pack& flags) {
-  double sum = 0;
-  GAITER_EACH sum += flags[i];
-  return sum;
+inline __attribute__((always_inline)) bool any(const Pack& flags) {
+  int found = 0;  // a sum of doubles would be taken one by one
+  GAITER_EACH found |= flags[i] > 0;
+  return found != 0;
 }
 
 // f and f' of one slice from its block.
@@ -63,11 +63,18 @@ void start_at_rest(const SliceShape& shape, const Pack* rows, PackState& state, 
   }
 }
 
-void start_actuated(PackState& state) {
+GAITER_MULTIVERSION
+void start_actuated(const SliceShape& shape, const Pack* rows, PackState& state) {
+  Pack relief, slope;
   initialise(state);
+  actuation_pressure(shape, rows, state.strain, relief, slope);
   GAITER_EACH {
+    const bool pressing = state.pressure[i] > 0;
     state.high[i] = state.rounding[i] = state.pressure[i];
-    if (!(state.pressure[i] > 0)) state.open[i] = 0;
+    state.open[i] = pressing ? 1 : 0;
+    state.strain_residual[i] = 0;
+    state.pressure_residual[i] = pressing ? relief[i] : 0;
+    state.bandage_slope[i] -= pressing ? slope[i] : 0;
   }
 }
 
@@ -112,7 +119,7 @@ void advance_newton(const SliceShape& shape, const Pack* rows, const Pack& direc
                     ? 1
                     : 0;
   }
-  if (any(remote) > 0) GAITER_EACH {
+  if (any(remote)) GAITER_EACH {
       const double pressure = state.pressure[i];
       const double bandage = remote[i] > 0 ? pressure - state.pressure_residual[i] : 1.0;
       const double slope = 1 - (1 - scalar_slope(state, i)) * pressure / bandage;

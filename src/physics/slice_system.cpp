@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-2-Clause
 #include "gaiter/physics/slice_system.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -11,6 +12,65 @@ namespace gaiter::physics {
 namespace {
 
 constexpr double vacuum_permittivity = 8.8541878128e-12;  // [F/m]
+
+// The places of a pack, and one of them by itself.
+struct Places {
+  int from = 0, to = pack_width;
+};
+
+#define GAITER_EACH for (int i = places.from; i < places.to; ++i)
+
+// What the slices of a segment have in common.
+GAITER_MULTIVERSION
+void set_wall(const SliceShape& shape, int layers, const SegmentConstants<Pack>& segments, Places places,
+              Pack* rows) {
+  const Pack &inner = segments.inner_radius, &thickness = segments.thickness,
+             &scale = segments.pressure_scale;
+  Pack& log_wall = rows[SliceShape::log_wall];
+  GAITER_EACH {
+    rows[SliceShape::pressure_scale][i] = scale[i];
+    const double area = thickness[i] * (2 * inner[i] + thickness[i]) / (inner[i] * inner[i]);
+    log_wall[i] = log1p(area);  // of (B^2 - A^2)/A^2
+  }
+  for (int k = 0; k < 4; ++k) GAITER_EACH rows[SliceShape::leg_0 + k][i] = segments.leg_law[k][i];
+  for (std::size_t j = 0; j < shape.wall.nodes.size(); ++j) {
+    Pack& wall = rows[shape.wall_row(static_cast<int>(j))];  // holds the node
+    GAITER_EACH wall[i] = exp(-log_wall[i] * wall[i]);
+  }
+  for (int k = 0; k < layers; ++k) {
+    Pack* layer = rows + shape.layer_row(k);
+    GAITER_EACH {
+      // A slice with fewer layers than the system has the rest of them without voltage.
+      const bool used = k < segments.layers[i];
+      const double thin = thickness[i] / segments.layers[i];
+      const double layer_inner = inner[i] + (used ? k * thin : 0);
+      const double field = used ? segments.voltage[i] / layer_inner : 0;  // [V/m]
+      layer[0][i] = (inner[i] / layer_inner) * (inner[i] / layer_inner);
+      layer[1][i] = thin * (2 * layer_inner + thin) / (layer_inner * layer_inner);
+      layer[2][i] = 2 * vacuum_permittivity * segments.permittivity[i] * field * field / scale[i];
+    }
+  }
+}
+
+// What differs from slice to slice of a segment: its undeformed leg radius, and its gap over A in `rows`.
+GAITER_MULTIVERSION
+void set_radius(const SliceShape& shape, const Pack& inner, const Pack& radius, Places places, Pack* rows) {
+  Pack strain, bound;
+  GAITER_EACH {
+    strain[i] = rows[SliceShape::gap][i] * inner[i] / radius[i];
+    rows[SliceShape::leg_radius][i] = radius[i] / inner[i];
+  }
+  // The bandage is slack at r = A, so no equilibrium lies beyond that strain; without contact any bound will
+  // do.
+  const Pack* law = rows + SliceShape::leg_0;
+  if (shape.material == model::LegMaterial::neo_hookean)
+    GAITER_EACH bound[i] = neo_hookean_pressure_bound(law[0][i], law[1][i], strain[i]);
+  else
+    GAITER_EACH bound[i] = strain_law_pressure_bound(law[0][i], law[2][i], strain[i]);
+  GAITER_EACH rows[SliceShape::pressure_limit][i] = bound[i] > 0 ? bound[i] : 1;
+}
+
+#undef GAITER_EACH
 
 }  // namespace
 
@@ -45,73 +105,66 @@ void SliceSystem::reset(SliceShape shape, std::size_t slices) {
   rows_.resize(packs_ * rows_per_pack_);
 }
 
-// What differs from slice to slice of a segment.
-void SliceSystem::set_slice(std::size_t index, const model::Leg& leg, const LegConstants& constants,
-                            const Wall& wall, double leg_radius) {
-  at(index, SliceShape::gap) = wall.gap / wall.inner_radius;
-  at(index, SliceShape::leg_radius) = leg_radius / wall.inner_radius;
-  // The bandage is slack at r = A, so no equilibrium lies beyond that strain; without contact any bound will
-  // do.
-  const double bound = pressure_bound(leg, constants, wall.gap / leg_radius);
-  at(index, SliceShape::pressure_limit) = bound > 0 ? bound : 1;
+// A slice's own points, as nodes, which become places in the wall; those that it does not use lie on the
+// inner face, without weight.
+void SliceSystem::set_wall_points(Pack* rows, int place, const Quadrature& rule) const {
+  for (std::size_t j = 0; j < shape_.wall.nodes.size(); ++j) {
+    const bool used = j < rule.nodes.size();
+    rows[shape_.wall_row(static_cast<int>(j))][place] = used ? rule.nodes[j] : 0;
+    rows[shape_.weight_row(static_cast<int>(j))][place] = used ? rule.weights[j] : 0;
+  }
 }
 
 void SliceSystem::set(std::size_t index, const model::Leg& leg, const model::Segment& segment,
                       const model::Bandage& bandage, const Wall& wall, double slice_radius, double voltage,
                       const Quadrature* wall_rule) {
-  const LegConstants constants = leg_constants(leg, segment);
-  set_slice(index, leg, constants, wall, slice_radius);
-  set_common(index, 1, constants, bandage, wall, voltage, wall_rule ? *wall_rule : shape_.wall);
+  const LegConstants law = leg_constants(leg, segment);
+  const int place = static_cast<int>(index % pack_width);
+  Pack* rows = rows_.data() + index / pack_width * rows_per_pack_;
+  SegmentConstants<Pack> constants;
+  Pack radius;
+  constants.pressure_scale[place] = law.pressure_scale;
+  for (int k = 0; k < 4; ++k) constants.leg_law[k][place] = law.value[k];
+  constants.inner_radius[place] = wall.inner_radius;
+  constants.thickness[place] = wall.thickness;
+  constants.voltage[place] = voltage;
+  constants.permittivity[place] = bandage.permittivity;
+  constants.layers[place] = bandage.layers;
+  for (int i = 0; i < shape_.ogden_terms; ++i) {
+    rows[shape_.mu_row(i)][place] = bandage.ogden[i].mu / law.pressure_scale;
+    rows[shape_.alpha_row(i)][place] = bandage.ogden[i].alpha;
+  }
+  set_wall_points(rows, place, wall_rule ? *wall_rule : shape_.wall);
+  const Places here{place, place + 1};
+  set_wall(shape_, layers_, constants, here, rows);
+  rows[SliceShape::gap][place] = wall.gap / wall.inner_radius;
+  radius[place] = slice_radius;
+  set_radius(shape_, constants.inner_radius, radius, here, rows);
   repeat_last(index + 1);
 }
 
-void SliceSystem::set_segment(std::size_t first, std::span<const double> heights, const model::Leg& leg,
-                              const model::Segment& segment, const model::Bandage& bandage,
-                              const model::Module& module, const Quadrature& wall_rule,
-                              std::span<double> radii) {
-  const LegConstants constants = leg_constants(leg, segment);
-  const double mean_radius = segment.mean_radius();
-  Wall wall;
+void SliceSystem::set_segments(std::size_t first_pack, std::span<const Pack> heights,
+                               const SegmentPack& segments, std::span<Pack> radii) {
+  const SegmentConstants<Pack>& constants = segments.constants;
+  Pack* first = rows_.data() + first_pack * rows_per_pack_;
+  for (int i = 0; i < pack_width; ++i) {
+    for (int k = 0; k < shape_.ogden_terms; ++k) {
+      const model::OgdenTerm& term = segments.bandages[i]->ogden[k];
+      first[shape_.mu_row(k)][i] = term.mu / constants.pressure_scale[i];
+      first[shape_.alpha_row(k)][i] = term.alpha;
+    }
+    set_wall_points(first, i, *segments.wall_rules[i]);
+  }
+  set_wall(shape_, layers_, constants, {}, first);
   for (std::size_t k = 0; k < heights.size(); ++k) {
-    radii[k] = segment.lower_radius + heights[k] * (segment.upper_radius - segment.lower_radius);
-    wall = reference_wall(bandage, module, mean_radius, radii[k]);
-    set_slice(first + k, leg, constants, wall, radii[k]);
-  }
-  set_common(first, heights.size(), constants, bandage, wall, module.voltage, wall_rule);
-  repeat_last(first + heights.size());
-}
-
-// What the slices of a segment have in common, from the leg's law and the wall without its gap.
-void SliceSystem::set_common(std::size_t first, std::size_t count, const LegConstants& constants,
-                             const model::Bandage& bandage, const Wall& wall, double voltage,
-                             const Quadrature& rule) {
-  const double inner = wall.inner_radius, scale = constants.pressure_scale;
-  const auto fill = [&](int row, double value) {
-    for (std::size_t slice = first; slice < first + count; ++slice) at(slice, row) = value;
-  };
-  const double area = wall.thickness * (2 * inner + wall.thickness) / (inner * inner);  // (B^2 - A^2)/A^2
-  const double log_area = std::log1p(area);
-  fill(SliceShape::log_wall, log_area);
-  for (int k = 0; k < 4; ++k) fill(SliceShape::leg_0 + k, constants.value[k]);
-  fill(SliceShape::pressure_scale, scale);
-  for (int i = 0; i < shape_.ogden_terms; ++i) {
-    fill(shape_.mu_row(i), bandage.ogden[i].mu / scale);
-    fill(shape_.alpha_row(i), bandage.ogden[i].alpha);
-  }
-  for (std::size_t j = 0; j < shape_.wall.nodes.size(); ++j) {
-    // Points that this slice does not use lie on the inner face, without weight.
-    const bool used = j < rule.nodes.size();
-    fill(shape_.wall_row(static_cast<int>(j)), used ? std::exp(-log_area * rule.nodes[j]) : 1);
-    fill(shape_.weight_row(static_cast<int>(j)), used ? rule.weights[j] : 0);
-  }
-  for (int k = 0; k < layers_; ++k) {
-    // A slice with fewer layers than the system has the rest of them without voltage.
-    const double thickness = wall.thickness / bandage.layers;
-    const double layer_inner = inner + (k < bandage.layers ? k * thickness : 0);
-    const double field = k < bandage.layers ? voltage / layer_inner : 0;  // [V/m]
-    fill(shape_.layer_row(k), (inner / layer_inner) * (inner / layer_inner));
-    fill(shape_.layer_row(k) + 1, thickness * (2 * layer_inner + thickness) / (layer_inner * layer_inner));
-    fill(shape_.layer_row(k) + 2, 2 * vacuum_permittivity * bandage.permittivity * field * field / scale);
+    Pack* rows = first + k * rows_per_pack_;
+    if (k > 0) std::copy_n(first, rows_per_pack_, rows);
+    for (int i = 0; i < pack_width; ++i) {
+      const double taper = constants.upper_radius[i] - constants.lower_radius[i];
+      radii[k][i] = constants.lower_radius[i] + heights[k][i] * taper;
+      rows[SliceShape::gap][i] = ((heights[k][i] - 0.5) * taper + constants.gap[i]) / constants.inner_radius[i];
+    }
+    set_radius(shape_, constants.inner_radius, radii[k], {}, rows);
   }
 }
 

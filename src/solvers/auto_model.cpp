@@ -19,19 +19,18 @@ namespace {
 using model::Fidelity;
 using physics::SegmentForecast;
 
-constexpr int most_planned_slices = 8, most_slices = 256;
+constexpr int most_planned_slices = 64, most_slices = 256;
 constexpr int most_planned_wall_points = 24;
-constexpr double largest_trusted_gain = 0.3;
 constexpr double strict_tolerance = 5e-5;  // below which few slices are not trusted to tell their own error
-constexpr int fewest_strict = 6;
 constexpr int most_sliding_slices = 192;
 constexpr int most_refinements = 3;
 constexpr double shares_model = 0.7;  // of the tolerance that the model's error may take
 
-// Measured on one core of a 2.1 GHz x86-64 server, batches of some hundred segments [s].
-constexpr double cost_of_segment = 1.2e-6;
-constexpr double cost_of_pressure = 12e-9;  // of a slice, per Ogden term and wall point
-constexpr double cost_of_slice = 60e-9;
+// Measured on one core of a 2.1 GHz x86-64 server, batches of some hundred segments [s]; of a slice in one
+// state, and of its pressure at one wall point, per Ogden term.
+constexpr double cost_of_segment = 0.15e-6;
+constexpr double cost_of_rigid_slice = 60e-9, cost_of_slice = 260e-9, cost_of_own_error = 60e-9;
+constexpr double cost_of_pressure = 13e-9;
 constexpr double cost_of_sliding_slice = 8e-6;
 constexpr double cost_of_finite_elements = 0.04;  // at refinement 0; four times more with each
 
@@ -39,15 +38,14 @@ constexpr double cost_of_finite_elements = 0.04;  // at refinement 0; four times
 
 double plan_cost(const model::Scene& scene, std::size_t segment, const SlicePlan& plan) {
   const int states = plan.actuated && scene.bandage.modules[segment].voltage != 0 ? 2 : 1;
-  const double evaluations = plan.fidelity == Fidelity::rigid         ? 1
-                             : plan.fidelity == Fidelity::first_order ? 1.5
-                                                                      : 4;
   const double slices = static_cast<double>(plan.slice_count) * (1 + static_cast<double>(plan.cuts.size()));
   if (plan.fidelity == Fidelity::axisym)
     return states * cost_of_finite_elements * std::pow(4, plan.slice_count);
   if (plan.fidelity == Fidelity::sliding) return states * cost_of_sliding_slice * slices;
   const double points = plan.wall_points * static_cast<double>(scene.bandage.ogden.size());
-  return cost_of_segment + states * slices * (cost_of_slice + evaluations * points * cost_of_pressure);
+  const double slice = (plan.fidelity == Fidelity::slice ? cost_of_slice : cost_of_rigid_slice) +
+                       (plan.slice_count >= physics::fewest_for_height_error ? cost_of_own_error : 0);
+  return cost_of_segment + states * slices * (slice + points * cost_of_pressure);
 }
 
 namespace {
@@ -64,34 +62,19 @@ void choose_points(const SegmentForecast& forecast, double tolerance, SlicePlan&
   const bool cut = !forecast.cuts().empty();
   plan.wall_points = 1;
   while (plan.wall_points < most_planned_wall_points &&
-         forecast.wall_error(plan.wall_points) > (cut ? 0.03 : 0.3) * tolerance)
+         forecast.wall_error(plan.wall_points) > (cut ? 0.1 : 0.25) * tolerance)
     ++plan.wall_points;
   plan.wall_error = forecast.wall_error(plan.wall_points);
-  // Past a cut the pressure rises from 0 like no exponential, and where the leg's law rules like no power of
-  // the radius: slices there are checked once solved.
-  const double gain = forecast.gain();
-  const bool strict = tolerance < strict_tolerance;
-  const int few = strict                               ? fewest_strict
-                  : cut || gain > largest_trusted_gain ? physics::fewest_for_height_error
-                                                       : 1;
-  const int fewest = cut ? few + 2 : few;
-  plan.roughness = cut ? 1 : gain / (1 + gain);
-  // Behind a leg that gives way much, or for small errors, small terms count that the forecast leaves out.
-  if ((strict || gain > largest_trusted_gain) && tolerance < 1e-2) {
-    ++plan.wall_points;
-    plan.wall_error = forecast.wall_error(plan.wall_points);
-  }
-  plan.slice_count = fewest;
-  while (plan.slice_count < most_planned_slices && forecast.height_error(plan.slice_count) > 0.6 * tolerance)
+  // Past a cut the pressure rises from 0 like no exponential: slices there are checked once solved.
+  plan.roughness = cut ? 1 : 0;
+  plan.slice_count = cut ? physics::fewest_for_height_error + (tolerance < strict_tolerance ? 4 : 1) : 1;
+  // Of a small error more terms count than the forecast has.
+  const double share = tolerance > 5e-5 ? 0.9 : tolerance > 5e-6 ? 0.6 : 0.3;
+  const double left = share * tolerance - plan.wall_error;
+  while (plan.slice_count < most_planned_slices && forecast.height_error(plan.slice_count) > left)
     ++plan.slice_count;
-  // Beyond two, the forecast is not trusted alone.
-  if (plan.slice_count == physics::fewest_for_height_error - 1) ++plan.slice_count;
   plan.height_error = forecast.height_error(plan.slice_count);
 }
-
-}  // namespace
-
-namespace {
 
 SlicePlan plan_for(const model::Scene& scene, std::size_t segment, SegmentForecast& forecast) {
   const model::Goal& goal = scene.goal;

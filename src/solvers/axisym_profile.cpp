@@ -67,7 +67,10 @@ RadialState slice_states(const model::Scene& scene, std::size_t segment,
   });
   if (actuated) {
     system.energise(true);
-    solver.solve(system, states, [&](std::size_t k) { physics::start_actuated(states[k]); });
+    const auto start = [&](std::size_t k) {
+      physics::start_actuated(system.shape(), system.pack(k), states[k]);
+    };
+    solver.solve(system, states, start, SliceSolver::FirstResidual::known);
   }
   for (std::size_t i = 0; i < count; ++i) {
     const PackState& state = states[i / pack_width];

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "gaiter/petsc/session.hpp"
+#include "gaiter/physics/segment_summary.hpp"
 #include "gaiter/physics/slice_kernel.hpp"
 #include "gaiter/physics/wall_resolution.hpp"
 
@@ -16,24 +17,10 @@ namespace {
 using model::Status;
 using physics::Pack;
 using physics::pack_width;
-using physics::SliceOutcome;
 using physics::SliceShape;
 
 constexpr double wall_tolerance =
     1e-12;  // of the quadrature through the wall, where the points are chosen here
-
-double voltage_of(const SegmentTask& task) {
-  if (task.plan && !task.plan->actuated) return 0;
-  return task.scene->bandage.modules[task.segment].voltage;
-}
-
-// A passive bandage of these terms presses harder the further it is stretched, so that there is one
-// equilibrium.
-bool has_only_stiffening_terms(const model::Bandage& bandage) {
-  return std::all_of(bandage.ogden.begin(), bandage.ogden.end(), [](const model::OgdenTerm& term) {
-    return term.mu * term.alpha >= 0 && std::fabs(term.alpha) >= 2;
-  });
-}
 
 }  // namespace
 
@@ -49,28 +36,13 @@ const physics::Quadrature& SliceModel::wall_rule(int points) {
   return found->second;
 }
 
-// Gauss points on each piece of the height between the plan's cuts.
-const physics::Quadrature& SliceModel::cut_rule(const SlicePlan& plan) {
-  const physics::Quadrature& gauss = height_rule(model::SliceRule::gauss, plan.slice_count);
-  physics::Quadrature& rule = cut_rules_.emplace_back();
-  for (std::size_t piece = 0; piece <= plan.cuts.size(); ++piece) {
-    const double from = piece == 0 ? 0 : plan.cuts[piece - 1];
-    const double to = piece == plan.cuts.size() ? 1 : plan.cuts[piece];
-    for (std::size_t k = 0; k < gauss.nodes.size(); ++k) {
-      rule.nodes.push_back(from + (to - from) * gauss.nodes[k]);
-      rule.weights.push_back((to - from) * gauss.weights[k]);
-    }
-  }
-  return rule;
-}
-
 // What is known of the errors of tasks that are not planned.
-void SliceModel::forecast(std::span<const SegmentTask> tasks) {
+void SliceModel::forecast() {
   using physics::SegmentForecast;
   forecasts_.clear();
   auto depth = SegmentForecast::Depth::sliding;
-  for (const SegmentTask& task : tasks) {
-    if (task.plan) continue;
+  for (const SegmentTask& task : tasks_) {
+    if (task.plan) return;
     const model::Scene& scene = *task.scene;
     forecasts_.emplace_back(scene, task.segment);
     if (scene.fidelity != model::Fidelity::slice || scene.discretisation.wall_points > 0)
@@ -81,77 +53,119 @@ void SliceModel::forecast(std::span<const SegmentTask> tasks) {
 
 // The tasks' slices, set up in the memory of the batch before.
 void SliceModel::take(std::span<const SegmentTask> tasks) {
-  tasks_.clear();
-  cut_rules_.clear();
+  tasks_ = tasks;
+  numbers_.clear();
   SliceShape shape;
-  int most_points = 1;
   bool voltage_somewhere = false, all_newton = true;
-  std::size_t slices = 0, forecast = 0;
   for (const SegmentTask& task : tasks) {
     const model::Scene& scene = *task.scene;
-    const model::Discretisation& how = scene.discretisation;
-    Task own;
-    own.first = slices;
-    int points = how.wall_points;
+    numbers_.push_back(physics::segment_numbers(scene, task.segment));
     if (task.plan) {
-      own.pieces = static_cast<int>(task.plan->cuts.size()) + 1;
-      own.end = slices += static_cast<std::size_t>(task.plan->slice_count * own.pieces);
-      points = task.plan->wall_points;
-      own.wall_error = task.plan->wall_error;
-      own.rule = own.pieces > 1 ? &cut_rule(*task.plan)
-                                : &height_rule(model::SliceRule::gauss, task.plan->slice_count);
-    } else {
-      own.end = slices += static_cast<std::size_t>(how.slice_count);
-      own.rule = &height_rule(how.slice_rule, how.slice_count);
+      numbers_.back().wall_points = task.plan->wall_points;
+      if (!task.plan->actuated) numbers_.back().voltage = 0;
     }
-    if (!task.plan) own.forecast = &forecasts_[forecast++];
-    if (!task.plan && points > 0) {
-      own.wall_error = own.forecast->wall_error(points);
-    } else if (!task.plan) {
-      const physics::WallChoice choice = physics::wall_points_for(scene, task.segment, wall_tolerance);
-      points = choice.points;
-      own.wall_error = choice.error;
-    }
-    own.wall_rule = &wall_rule(points);
-    own.wall_points = points;
-    own.voltage = voltage_of(task);
-    own.data_limit = scene.leg.material == model::LegMaterial::compliance
-                         ? scene.leg.data_limit
-                         : std::numeric_limits<double>::infinity();
-    own.stiffens = has_only_stiffening_terms(scene.bandage);
-    tasks_.push_back(own);
-    most_points = std::max(most_points, points);
-    shape.layers = std::max(shape.layers, own.voltage != 0 ? scene.bandage.layers : 0);
+    const bool voltage = numbers_.back().voltage != 0;
+    shape.layers = std::max(shape.layers, voltage ? scene.bandage.layers : 0);
     shape.ogden_terms = static_cast<int>(scene.bandage.ogden.size());
     shape.material = scene.leg.material;
-    voltage_somewhere = voltage_somewhere || own.voltage != 0;
-    all_newton = all_newton && how.slice_solver == model::SliceSolver::newton;
+    voltage_somewhere = voltage_somewhere || voltage;
+    all_newton = all_newton && scene.discretisation.slice_solver == model::SliceSolver::newton;
   }
   energised_ = !petsc::agree(comm_, !voltage_somewhere);
   newton_ = petsc::agree(comm_, all_newton);
-  shape.wall = wall_rule(most_points);
-  system_.reset(std::move(shape), slices);
-  states_.resize(system_.packs());
-  rigid_pressure_.resize(system_.packs());
-  rest_pressure_.resize(system_.packs());
-  outcomes_.assign(slices, {});
-  owner_.resize(slices);
-  radii_.resize(slices);
-  for (std::size_t t = 0; t < tasks.size(); ++t) {
-    const Task& own = tasks_[t];
-    const model::Scene& scene = *tasks[t].scene;
-    const model::Segment& segment = scene.leg.segments[tasks[t].segment];
-    const model::Module& module = scene.bandage.modules[tasks[t].segment];
-    system_.set_segment(own.first, own.rule->nodes, scene.leg, segment, scene.bandage, module, *own.wall_rule,
-                        std::span(radii_).subspan(own.first, own.end - own.first));
-    const double reference =
-        module.length > 0 ? module.length / (2 * M_PI) : segment.mean_radius() / module.stretch;
-    for (std::size_t slice = own.first; slice < own.end; ++slice) {
-      outcomes_[slice].leg_radius = radii_[slice];
-      outcomes_[slice].reference_radius = reference;
-      owner_[slice] = t;
+  forecast();
+  if (forecasts_.size() == tasks.size()) physics::choose_wall_points(numbers_, wall_tolerance);
+  for (std::size_t t = 0; t < tasks.size(); ++t)
+    if (tasks[t].plan)
+      numbers_[t].wall_error = tasks[t].plan->wall_error;
+    else if (const int points = tasks[t].scene->discretisation.wall_points; points > 0)
+      numbers_[t].wall_error = forecasts_[t].wall_error(points);
+  arrange();
+  double most_points = 1;
+  for (const auto& numbers : numbers_) most_points = std::max(most_points, numbers.wall_points);
+  shape.wall = wall_rule(static_cast<int>(most_points));
+  const std::size_t packs = blocks_.empty() ? 0 : blocks_.back().end_pack();
+  system_.reset(std::move(shape), packs * pack_width);
+  states_.resize(packs);
+  rigid_pressure_.resize(packs);
+  rest_pressure_.resize(packs);
+  radii_.resize(packs);
+  outcomes_.assign(packs, {});
+  for (Block& block : blocks_) {
+    set_segments(block.tasks, block.segments);
+    system_.set_segments(block.first_pack, block.heights, block.segments,
+                         std::span(radii_).subspan(block.first_pack));
+    for (std::size_t k = block.first_pack; k < block.end_pack(); ++k) {
+      outcomes_[k].leg_radius = radii_[k];
+      outcomes_[k].inner_radius = block.segments.constants.inner_radius;
     }
   }
+}
+
+// Tasks in blocks: those with equally many slices, thin walls before the thicker ones, so that most packs
+// have no more wall points than their slices need.
+void SliceModel::arrange() {
+  struct Counts {
+    int slices, pieces, wall_points;
+    auto operator<=>(const Counts&) const = default;
+  };
+  std::map<Counts, std::vector<std::size_t>> alike;
+  for (std::size_t t = 0; t < tasks_.size(); ++t) {
+    const SlicePlan* plan = tasks_[t].plan;
+    const int slices = plan ? plan->slice_count : tasks_[t].scene->discretisation.slice_count;
+    const int pieces = plan ? static_cast<int>(plan->cuts.size()) + 1 : 1;
+    alike[{slices, pieces, static_cast<int>(numbers_[t].wall_points)}].push_back(t);
+  }
+  std::size_t blocks = 0, packs = 0;
+  Counts before{};
+  for (const auto& [counts, tasks] : alike)
+    for (const std::size_t task : tasks) {
+      const bool same = counts.slices == before.slices && counts.pieces == before.pieces;
+      if (blocks == 0 || !same || blocks_[blocks - 1].tasks.size() == pack_width) {
+        if (++blocks > blocks_.size()) blocks_.emplace_back();
+        Block& block = blocks_[blocks - 1];
+        before = counts;
+        const model::SliceRule rule = tasks_[task].plan ? model::SliceRule::gauss
+                                                        : tasks_[task].scene->discretisation.slice_rule;
+        block.first_pack = packs;
+        block.rule = &height_rule(rule, counts.slices);
+        block.pieces = counts.pieces;
+        block.heights.resize(block.rule->nodes.size() * static_cast<std::size_t>(counts.pieces));
+        block.tasks.clear();
+        packs = block.end_pack();
+      }
+      blocks_[blocks - 1].tasks.push_back(task);
+    }
+  blocks_.resize(blocks);
+  for (Block& block : blocks_) lay_slices(block);
+}
+
+// The rule's points on each piece of the height between the plan's cuts.
+void SliceModel::lay_slices(Block& block) {
+  const std::size_t count = block.rule->nodes.size();
+  block.weights.resize(block.heights.size());
+  for (int i = 0; i < pack_width; ++i) {
+    const std::size_t task = block.tasks[std::min<std::size_t>(i, block.tasks.size() - 1)];
+    for (int piece = 0; piece < block.pieces; ++piece) {
+      const double from = piece == 0 ? 0 : tasks_[task].plan->cuts[piece - 1];
+      const double to = piece + 1 == block.pieces ? 1 : tasks_[task].plan->cuts[piece];
+      for (std::size_t k = 0; k < count; ++k) {
+        const std::size_t slice = static_cast<std::size_t>(piece) * count + k;
+        block.heights[slice][i] = from + (to - from) * block.rule->nodes[k];
+        block.weights[slice][i] = (to - from) * block.rule->weights[k];
+      }
+    }
+  }
+}
+
+// Up to 64 tasks to a pack of segments.
+void SliceModel::set_segments(std::span<const std::size_t> tasks, physics::SegmentPack& segments) {
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    const physics::SegmentNumbers& numbers = numbers_[tasks[i]];
+    segments.set(static_cast<int>(i), numbers, tasks_[tasks[i]].scene->bandage,
+                 wall_rule(static_cast<int>(numbers.wall_points)));
+  }
+  segments.close(static_cast<int>(tasks.size()));
 }
 
 // One solver serves all batches, unless one is larger than any before.
@@ -164,62 +178,50 @@ void SliceModel::prepare_solver(model::SliceSolver algorithm, double tolerance) 
   solver_ = std::make_unique<SliceSolver>(comm_, system_.packs(), algorithm, tolerance);
 }
 
-// On a leg that does not give way; negative pressures mean no contact.
+// On a leg that does not give way.
 void SliceModel::rigid_pressures() {
-  Pack none{}, slope, relief{};
-  for (std::size_t k = 0; k < system_.packs(); ++k) {
-    if (energised_) {
-      system_.energise(true);
-      physics::actuation_pressure(system_.shape(), system_.pack(k), none, relief, slope);
-    }
-    const Pack& scale = system_.pack(k)[SliceShape::pressure_scale];
-    const std::size_t end = std::min(system_.slices() - k * pack_width, std::size_t{pack_width});
-    for (std::size_t i = 0; i < end; ++i) {
-      const double at_rest = rigid_pressure_[k][i], actuated = at_rest - relief[i];
-      SliceOutcome& outcome = outcomes_[k * pack_width + i];
-      outcome.pressure_rest_rigid = std::max(0.0, at_rest) * scale[i];
-      outcome.pressure_actuated_rigid = std::max(0.0, actuated) * scale[i];
-    }
-  }
+  const Pack none{};
+  Pack slope, relief{};
+  system_.energise(true);
+  each_pack([&](const Block&, std::size_t k) {
+    if (energised_) physics::actuation_pressure(system_.shape(), system_.pack(k), none, relief, slope);
+    physics::record_rigid(system_.pack(k), rigid_pressure_[k], relief, outcomes_[k]);
+  });
 }
 
 void SliceModel::solve_rigid() {
+  const Pack none{};
+  Pack slope;
   system_.energise(false);
-  Pack none{}, slope;
-  for (std::size_t k = 0; k < system_.packs(); ++k)
+  each_pack([&](const Block&, std::size_t k) {
     physics::bandage_pressure(system_.shape(), system_.pack(k), none, rigid_pressure_[k], slope);
+  });
   rigid_pressures();
-  for (std::size_t slice = 0; slice < outcomes_.size(); ++slice) {
-    SliceOutcome& outcome = outcomes_[slice];
-    states_[slice / pack_width].strain[slice % pack_width] = 0;
-    const double touching = outcome.leg_radius / system_.constant(slice, SliceShape::leg_radius);
-    outcome.pressure_rest = outcome.pressure_rest_rigid;
-    outcome.pressure_actuated = outcome.pressure_actuated_rigid;
-    outcome.radius_rest = outcome.radius_actuated = outcome.leg_radius;
-    outcome.bandage_radius_rest = outcome.bandage_radius_actuated =
-        outcome.pressure_rest > 0 ? outcome.leg_radius : std::max(outcome.leg_radius, touching);
-    if (outcome.pressure_rest == 0) outcome.status = Status::slack;
-  }
+  each_pack([&](const Block&, std::size_t k) { physics::adopt_rigid(outcomes_[k]); });
 }
 
 // What the slices start from, taken for the answer: no equation is solved.
 void SliceModel::solve_first_order() {
-  for (bool at_rest : {true, false}) {
+  for (const bool at_rest : {true, false}) {
     if (!at_rest && !energised_) break;
     system_.energise(!at_rest);
-    for (std::size_t k = 0; k < system_.packs(); ++k) {
+    each_pack([&](const Block& block, std::size_t k) {
       Pack pressure;
       physics::start_at_rest(system_.shape(), system_.pack(k), states_[k], pressure);
-      if (at_rest) rigid_pressure_[k] = pressure;
       for (int i = 0; i < pack_width; ++i) states_[k].open[i] = 0;
-    }
-    record(at_rest);
+      const Pack& limit = block.segments.constants.data_limit;
+      if (at_rest) {
+        rigid_pressure_[k] = pressure;
+        physics::record_rest(system_.pack(k), states_[k], limit, outcomes_[k]);
+      } else {
+        physics::record_actuated(system_.pack(k), states_[k], limit, outcomes_[k]);
+      }
+    });
     if (at_rest) rigid_pressures();
   }
 }
 
 std::span<const model::SegmentResult> SliceModel::solve(std::span<const SegmentTask> tasks) {
-  forecast(tasks);
   take(tasks);
   const model::Scene* scene = tasks.empty() ? nullptr : tasks[0].scene;
   const model::Fidelity asked = !scene          ? model::Fidelity::slice
@@ -228,9 +230,6 @@ std::span<const model::SegmentResult> SliceModel::solve(std::span<const SegmentT
   const bool rigid = petsc::largest(comm_, scene && (asked == model::Fidelity::rigid ||
                                                      scene->leg.model == model::LegModel::rigid)) > 0;
   const bool first_order = !rigid && petsc::largest(comm_, asked == model::Fidelity::first_order) > 0;
-  const model::Fidelity fidelity = rigid         ? model::Fidelity::rigid
-                                   : first_order ? model::Fidelity::first_order
-                                                 : model::Fidelity::slice;
   if (rigid) {
     solve_rigid();
   } else if (first_order) {
@@ -244,26 +243,37 @@ std::span<const model::SegmentResult> SliceModel::solve(std::span<const SegmentT
   }
   system_.energise(true);
   if (energised_) finish_actuated();
-
-  results_.clear();
-  for (std::size_t t = 0; t < tasks_.size(); ++t) {
-    const Task& own = tasks_[t];
-    const double error = height_error(tasks[t], own, fidelity) + own.wall_error;
-    results_.push_back(physics::summarise(std::span(outcomes_).subspan(own.first, own.end - own.first),
-                                          *own.rule, tasks[t].scene->leg.segments[tasks[t].segment].height,
-                                          error));
-    model::SegmentResult& result = results_.back();
-    result.fidelity = fidelity;
-    result.slice_count = static_cast<int>(own.end - own.first);
-    result.wall_points = own.wall_points;
-    // A slice's state is that of the branch from rest; where this one ends is not looked for.
-    result.voltage_stable =
-        result.status < Status::pulled_in ? own.voltage : std::numeric_limits<double>::quiet_NaN();
-    if (!model::trustworthy(result.status)) continue;
-    result.model_error = model_error(tasks[t], own, fidelity);
-    model::derive_error(result);
-  }
+  summarise(rigid         ? model::Fidelity::rigid
+            : first_order ? model::Fidelity::first_order
+                          : model::Fidelity::slice);
   return results_;
+}
+
+void SliceModel::summarise(model::Fidelity fidelity) {
+  unclear_.clear();
+  height_error_.resize(tasks_.size());
+  for (const Block& block : blocks_) height_errors(block);
+  errors_of_start(fidelity == model::Fidelity::rigid);
+  results_.resize(tasks_.size());
+  for (const Block& block : blocks_) {
+    const auto slices = std::span(outcomes_).subspan(block.first_pack, block.heights.size());
+    const physics::SegmentSummary summary(slices, block.weights, block.segments);
+    for (std::size_t i = 0; i < block.tasks.size(); ++i) {
+      const std::size_t task = block.tasks[i];
+      const physics::SegmentNumbers& numbers = numbers_[task];
+      model::SegmentResult& result = results_[task];
+      result = summary.result(static_cast<int>(i), height_error_[task] + numbers.wall_error);
+      result.fidelity = fidelity;
+      result.slice_count = static_cast<int>(block.heights.size());
+      result.wall_points = static_cast<int>(numbers.wall_points);
+      // A slice's state is that of the branch from rest; where this one ends is not looked for.
+      result.voltage_stable =
+          result.status < Status::pulled_in ? numbers.voltage : std::numeric_limits<double>::quiet_NaN();
+      if (!model::trustworthy(result.status)) continue;
+      result.model_error = model_error(task, fidelity);
+      model::derive_error(result);
+    }
+  }
 }
 
 std::vector<model::SegmentResult> solve_segments(MPI_Comm comm, std::span<const SegmentTask> tasks) {

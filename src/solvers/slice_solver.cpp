@@ -37,8 +37,8 @@ void write_pairs(const Pack& first, const Pack& second, PetscScalar* pairs) {
 }
 
 double count_open(const PackState& state) {
-  double open = 0;
-  for (int i = 0; i < pack_width; ++i) open += state.open[i];
+  int open = 0;  // a sum of doubles would be taken one by one
+  for (int i = 0; i < pack_width; ++i) open += state.open[i] > 0;
   return open;
 }
 
@@ -98,15 +98,15 @@ PetscErrorCode SliceSolver::create_matrix(MPI_Comm comm) {
 }
 
 SliceReport SliceSolver::solve(const physics::SliceSystem& system, std::vector<PackState>& states,
-                               const Start& start) {
+                               const Start& start, FirstResidual first) {
   system_ = &system;
   states_ = &states;
   SliceReport report;
-  petsc::check(run(start, report));
+  petsc::check(run(start, first, report));
   return report;
 }
 
-PetscErrorCode SliceSolver::run(const Start& start, SliceReport& report) {
+PetscErrorCode SliceSolver::run(const Start& start, FirstResidual first, SliceReport& report) {
   PetscFunctionBegin;
   // The first residual is taken pack by pack with the start, while its constants are at hand.
   PetscScalar *iterate = nullptr, *residual = nullptr;
@@ -121,7 +121,8 @@ PetscErrorCode SliceSolver::run(const Start& start, SliceReport& report) {
     const double open = count_open(state);
     if (open > 0) {
       work_.push_back({system_->pack(k), &state, pack_width * k, nullptr, pack_width});
-      physics::evaluate_residual(system_->shape(), system_->pack(k), state);
+      if (first == FirstResidual::evaluated)
+        physics::evaluate_residual(system_->shape(), system_->pack(k), state);
       write_pairs(state.strain_residual, state.pressure_residual, residual + place);
     } else {
       std::fill_n(residual + place, 2 * pack_width, 0.0);
@@ -211,7 +212,7 @@ void SliceSolver::invert(const PetscScalar* in, PetscScalar* out) {
 
 void SliceSolver::step(const PetscScalar* direction, PetscScalar* iterate, PetscScalar* residual,
                        Totals& totals) {
-  Pack unused, pressure, before;
+  Pack unused, pressure, before, residual_square{}, step_square{};
   std::size_t left = 0;  // packs that are still open move to the front
   for (const Work& work : work_) {
     PackState& state = *work.state;
@@ -228,21 +229,25 @@ void SliceSolver::step(const PetscScalar* direction, PetscScalar* iterate, Petsc
       write_pairs(state.strain, state.pressure, iterate + 2 * work.first);
       write_pairs(state.strain_residual, state.pressure_residual, residual + 2 * work.first);
     }
-    double open = 0;
     for (int i = 0; i < pack_width; ++i) {
       const double change = state.pressure[i] - before[i];
-      open += state.open[i];
-      totals.residual_square += state.open[i] * state.pressure_residual[i] * state.pressure_residual[i];
-      totals.step_square += change * change;
-      if (!work.from || i >= work.count) continue;
+      residual_square[i] += state.open[i] * state.pressure_residual[i] * state.pressure_residual[i];
+      step_square[i] += change * change;
+    }
+    for (int i = 0; work.from && i < work.count; ++i) {
       const std::size_t place = 2 * work.slice(i);
       iterate[place] = state.strain[i];
       iterate[place + 1] = state.pressure[i];
       residual[place] = state.strain_residual[i];
       residual[place + 1] = state.pressure_residual[i];
     }
+    const double open = count_open(state);
     totals.open += open;
     if (open > 0) work_[left++] = work;
+  }
+  for (int i = 0; i < pack_width; ++i) {
+    totals.residual_square += residual_square[i];
+    totals.step_square += step_square[i];
   }
   work_.resize(left);
   if (own_inverse_ && left > 1 && totals.open < sparse * pack_width * static_cast<double>(left))

@@ -2,43 +2,28 @@
 // The states that the slices of a batch pass through: at rest, under voltage, and what is found in each.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "gaiter/petsc/session.hpp"
 #include "gaiter/physics/branch.hpp"
-#include "gaiter/physics/height_error.hpp"
 #include "gaiter/physics/slice_kernel.hpp"
 #include "gaiter/solvers/slice_model.hpp"
 
 namespace gaiter::solvers {
 
-using model::Fidelity;
 using model::Status;
 using physics::Pack;
 using physics::pack_width;
 using physics::PackState;
-using physics::SliceOutcome;
+using physics::SliceOutcomes;
 using physics::SliceShape;
 
 namespace {
 
-constexpr int fewest_to_tell = 6;  // slices laid by the scene whose own pressures are asked for their error
-
-constexpr double caution = 10;  // of an error estimated from starting values instead of solutions
-constexpr double largest_own_error = 1e-7;
-constexpr double smallest_error = 4e-15;  // of a sum of some slices, by rounding
-constexpr int most_check_points = 128;    // over the height, of the rule that an error estimate compares with
 // f' of the scalar equation of a slice: 1 for a bandage that does not stiffen or soften with the leg's
 // radius. Below this there may be a limit point near by, and the equilibrium is searched for along the path.
 constexpr double doubtful_slope = 0.5;
 
 }  // namespace
-
-template <typename Action>
-void SliceModel::each_slice(Action&& action) {
-  for (std::size_t slice = 0; slice < owner_.size(); ++slice)
-    action(slice, owner_[slice], slice / pack_width, static_cast<int>(slice % pack_width));
-}
 
 void SliceModel::rest() {
   system_.energise(false);
@@ -53,44 +38,57 @@ void SliceModel::rest() {
     }
   });
   if (newton_) solve_doubtful(true);
-  record(true);
+  each_pack([&](const Block& block, std::size_t k) {
+    physics::record_rest(system_.pack(k), states_[k], block.segments.constants.data_limit, outcomes_[k]);
+  });
 }
 
 void SliceModel::actuate() {
   system_.energise(true);
-  for (std::size_t k = 0; k < system_.packs(); ++k) {
-    rest_pressure_[k] = states_[k].pressure;
-    newton_ ? physics::start_actuated(states_[k]) : physics::start_fixed_point(false, states_[k]);
-  }
-  each_slice([&](std::size_t slice, std::size_t t, std::size_t pack, int place) {
-    if (tasks_[t].voltage == 0 || outcomes_[slice].status >= Status::no_equilibrium)
-      states_[pack].open[place] = 0;
+  each_pack([&](const Block& block, std::size_t k) {
+    PackState& state = states_[k];
+    rest_pressure_[k] = state.pressure;
+    if (newton_)
+      physics::start_actuated(system_.shape(), system_.pack(k), state);
+    else
+      physics::start_fixed_point(false, state);
+    for (int i = 0; i < pack_width; ++i) {
+      const bool passive = block.segments.constants.voltage[i] == 0;
+      const bool lost = outcomes_[k].status_of(i) >= Status::no_equilibrium;
+      state.open[i] = passive || lost ? 0 : state.open[i];
+    }
   });
-  solver_->solve(system_, states_);
+  using First = SliceSolver::FirstResidual;
+  solver_->solve(
+      system_, states_, [](std::size_t) {}, newton_ ? First::known : First::evaluated);
   if (newton_) solve_doubtful(false);
-  record(false);
+  each_pack([&](const Block& block, std::size_t k) {
+    physics::record_actuated(system_.pack(k), states_[k], block.segments.constants.data_limit, outcomes_[k]);
+  });
 }
 
 // Slices whose equation was, somewhere on the way, too flat for Newton's root to be surely the one that the
 // bandage reaches: find the interval of that one, and solve again inside it.
 void SliceModel::solve_doubtful(bool at_rest) {
   double reopened = 0;
-  each_slice([&](std::size_t slice, std::size_t t, std::size_t pack, int place) {
-    PackState& state = states_[pack];
-    const bool sure = at_rest && tasks_[t].stiffens;
-    const bool soft = !tasks_[t].stiffens || state.smallest_slope[place] < doubtful_slope;
-    const double highest =
-        at_rest ? system_.constant(slice, SliceShape::pressure_limit) : rest_pressure_[pack][place];
-    if (sure || !soft || state.iterations[place] == 0 || !(highest > 0)) return;
-    const auto found = physics::contact_interval(system_, slice, highest, at_rest);
-    state.open[place] = found ? 1 : 0;
-    if (found) {
-      state.low[place] = std::min(found->from, found->to);
-      state.high[place] = std::max(found->from, found->to);
-      state.pressure[place] = 0.5 * (found->from + found->to);
-      ++reopened;
-    } else {
-      state.pressure[place] = 0;
+  each_pack([&](const Block& block, std::size_t k) {
+    const Pack& stiffens = block.segments.constants.stiffens;
+    PackState& state = states_[k];
+    for (int i = 0; i < block.segments.count; ++i) {
+      const bool soft = !(stiffens[i] > 0) || (!at_rest && state.smallest_slope[i] < doubtful_slope);
+      if (!soft || state.iterations[i] == 0) continue;
+      const double highest = at_rest ? system_.pack(k)[SliceShape::pressure_limit][i] : rest_pressure_[k][i];
+      if (!(highest > 0)) continue;
+      const auto found = physics::contact_interval(system_, k * pack_width + i, highest, at_rest);
+      state.open[i] = found ? 1 : 0;
+      if (found) {
+        state.low[i] = std::min(found->from, found->to);
+        state.high[i] = std::max(found->from, found->to);
+        state.pressure[i] = 0.5 * (found->from + found->to);
+        ++reopened;
+      } else {
+        state.pressure[i] = 0;
+      }
     }
   });
   if (petsc::sum(comm_, reopened) == 0) return;
@@ -103,155 +101,28 @@ void SliceModel::solve_doubtful(bool at_rest) {
   });
 }
 
-// States of the slices to outcomes.
-void SliceModel::record(bool at_rest) {
-  each_slice([&](std::size_t slice, std::size_t t, std::size_t pack, int place) {
-    SliceOutcome& outcome = outcomes_[slice];
-    const PackState& state = states_[pack];
-    const double pressure = state.pressure[place] * system_.constant(slice, SliceShape::pressure_scale);
-    const double radius = outcome.leg_radius * (1 - state.strain[place]);
-    const double touching = outcome.leg_radius / system_.constant(slice, SliceShape::leg_radius);  // A
-    outcome.iterations = std::max(outcome.iterations, static_cast<int>(state.iterations[place]));
-    if (state.open[place] > 0 || state.failed[place] > 0)
-      outcome.status = std::max(outcome.status, Status::diverged);
-    if (pressure > tasks_[t].data_limit) outcome.status = std::max(outcome.status, Status::extrapolated);
-    if (at_rest) {
-      outcome.pressure_rest = pressure;
-      outcome.radius_rest = radius;
-      outcome.bandage_radius_rest = pressure > 0 ? radius : std::max(radius, touching);
-      if (pressure == 0) outcome.status = std::max(outcome.status, Status::slack);
-    }
-    outcome.pressure_actuated = pressure;
-    outcome.strain_actuated = state.strain[place];
-    outcome.radius_actuated = radius;
-    outcome.bandage_radius_actuated = pressure > 0 ? radius : std::max(radius, touching);
-  });
-}
-
-// A bandage under voltage that does not touch the leg: its own equilibrium, if it has one.
-void SliceModel::float_free(std::size_t slice) {
-  SliceOutcome& outcome = outcomes_[slice];
-  const double start = 1 - outcome.bandage_radius_actuated / outcome.leg_radius;
-  const auto strain = physics::floating_strain(system_, slice, start);
-  const Status found = outcome.pressure_rest > 0 ? Status::lifted : Status::slack;
-  outcome.status = std::max(outcome.status, strain ? found : Status::pulled_in);
-  if (strain) outcome.bandage_radius_actuated = outcome.leg_radius * (1 - *strain);
+// Slices of a pack that do not touch the leg under voltage: the bandage's own equilibrium, if it has one.
+void SliceModel::float_free(const Block& block, std::size_t pack) {
+  SliceOutcomes& outcomes = outcomes_[pack];
+  for (int i = 0; i < block.segments.count; ++i) {
+    if (outcomes.pressure_actuated[i] != 0 || block.segments.constants.voltage[i] == 0 ||
+        outcomes.status_of(i) >= Status::no_equilibrium)
+      continue;
+    const double start = 1 - outcomes.bandage_radius_actuated[i] / outcomes.leg_radius[i];
+    const auto strain = physics::floating_strain(system_, pack * pack_width + i, start);
+    const Status floating = outcomes.pressure_rest[i] > 0 ? Status::lifted : Status::slack;
+    const Status found = strain ? floating : Status::pulled_in;
+    outcomes.status[i] = static_cast<double>(std::max(outcomes.status_of(i), found));
+    if (strain) outcomes.bandage_radius_actuated[i] = outcomes.leg_radius[i] * (1 - *strain);
+  }
 }
 
 // What needs the actuated radius of the bandage: lift-off, actuation pressure, field.
 void SliceModel::finish_actuated() {
-  Pack strain, pressure, slope, field;
-  for (std::size_t k = 0; k < system_.packs(); ++k) {
-    strain = states_[k].strain;
-    const std::size_t first = k * pack_width, end = std::min(outcomes_.size(), first + pack_width);
-    for (std::size_t slice = first; slice < end; ++slice) {
-      SliceOutcome& outcome = outcomes_[slice];
-      if (outcome.status >= Status::no_equilibrium) continue;
-      if (tasks_[owner_[slice]].voltage != 0 && outcome.pressure_actuated == 0) float_free(slice);
-      strain[slice - first] = 1 - outcome.bandage_radius_actuated / outcome.leg_radius;
-    }
-    physics::actuation_pressure(system_.shape(), system_.pack(k), strain, pressure, slope);
-    physics::largest_field(system_.shape(), system_.pack(k), strain, field);
-    for (std::size_t slice = first; slice < end; ++slice) {
-      SliceOutcome& outcome = outcomes_[slice];
-      const double inner = outcome.leg_radius / system_.constant(slice, SliceShape::leg_radius);
-      outcome.actuation_pressure =
-          pressure[slice - first] * system_.constant(slice, SliceShape::pressure_scale);
-      outcome.electric_field = field[slice - first] * tasks_[owner_[slice]].voltage / inner;
-    }
-  }
-}
-
-// From the pressures at the slices of the pieces that touch the leg, where these are enough to tell.
-double SliceModel::height_error_of_pieces(const SegmentTask& task, const Task& own, bool actuated) {
-  const std::size_t count = (own.end - own.first) / static_cast<std::size_t>(own.pieces);
-  const model::Segment& leg = task.scene->leg.segments[task.segment];
-  const physics::Quadrature& gauss = height_rule(model::SliceRule::gauss, static_cast<int>(count));
-  const double taper = 0.5 * (leg.upper_radius - leg.lower_radius) / leg.mean_radius();
-  double sum = 0, mean = 0;
-  pressures_.resize(count);
-  for (int piece = 0; piece < own.pieces; ++piece) {
-    const std::size_t first = own.first + static_cast<std::size_t>(piece) * count;
-    double part = 0, share = 0;
-    for (std::size_t k = 0; k < count; ++k) {
-      const SliceOutcome& slice = outcomes_[first + k];
-      pressures_[k] = actuated ? slice.pressure_actuated : slice.pressure_rest;
-      part += own.rule->weights[first - own.first + k] * pressures_[k];
-      share += own.rule->weights[first - own.first + k];
-    }
-    mean += part;
-    const double rough = task.plan ? task.plan->roughness : 0;
-    sum += part * physics::height_error(gauss, pressures_, std::max(std::fabs(taper * share), rough));
-  }
-  return mean > 0 ? sum / mean : 0;
-}
-
-// What models beyond this one would change, as far as it is known.
-double SliceModel::model_error(const SegmentTask& task, const Task& own, Fidelity fidelity) {
-  if (task.plan) return task.plan->change_beyond;
-  const double sliding = own.forecast->sliding_error();
-  const bool gives_way = task.scene->leg.model != model::LegModel::rigid;
-  if (fidelity == Fidelity::slice || !gives_way) return sliding;
-  // A leg without compliance has none to correct for.
-  const bool known = task.scene->leg.material != model::LegMaterial::compliance ||
-                     task.scene->leg.segments[task.segment].compliance.b > 0;
-  if (!known) return std::numeric_limits<double>::quiet_NaN();
-  return sliding +
-         (fidelity == Fidelity::rigid ? own.forecast->compliance_error() : own.forecast->first_order_error());
-}
-
-// Relative error of a task's height averages. From its pressures alone, where these leave no doubt.
-double SliceModel::height_error(const SegmentTask& task, const Task& own, Fidelity fidelity) {
-  const bool rigid = fidelity == Fidelity::rigid;
-  if (task.plan) {
-    const std::size_t count = (own.end - own.first) / static_cast<std::size_t>(own.pieces);
-    if (count < physics::fewest_for_height_error) return task.plan->height_error;
-    const double at_rest = height_error_of_pieces(task, own, false);
-    return std::max(smallest_error,
-                    own.voltage != 0 ? std::max(at_rest, height_error_of_pieces(task, own, true)) : at_rest);
-  }
-  const std::size_t count = own.end - own.first;
-  if (count >= fewest_to_tell &&
-      task.scene->discretisation.slice_rule == model::SliceRule::gauss) {
-    double error = std::max(smallest_error, height_error_of_pieces(task, own, false));
-    if (own.voltage != 0) error = std::max(error, height_error_of_pieces(task, own, true));
-    if (error < largest_own_error) return error;
-  }
-  return height_error_of_start(task, own, rigid);
-}
-
-// From the average of the starting values, which are close to the pressures, by the task's rule against the
-// one by a finer rule.
-double SliceModel::height_error_of_start(const SegmentTask& task, const Task& own, bool rigid) {
-  const model::Scene& scene = *task.scene;
-  const int count = static_cast<int>(own.rule->nodes.size());
-  const physics::Quadrature& fine =
-      height_rule(model::SliceRule::gauss, std::min(2 * count + 4, most_check_points));
-  std::vector<double> heights = fine.nodes;
-  heights.insert(heights.end(), own.rule->nodes.begin(), own.rule->nodes.end());
-  std::vector<double> radii(heights.size()), pressures(heights.size());
-  SliceShape shape = system_.shape();
-  shape.layers = own.voltage != 0 ? scene.bandage.layers : 0;
-  physics::SliceSystem system(std::move(shape), heights.size());
-  system.set_segment(0, heights, scene.leg, scene.leg.segments[task.segment], scene.bandage,
-                     scene.bandage.modules[task.segment], *own.wall_rule, radii);
-  double error = smallest_error;
-  for (bool on : {false, true}) {
-    system.energise(on);
-    for (std::size_t k = 0; k < system.packs(); ++k) {
-      PackState start;
-      Pack pressure;
-      physics::start_at_rest(system.shape(), system.pack(k), start, pressure);
-      for (std::size_t i = 0; i < pack_width && k * pack_width + i < heights.size(); ++i)
-        pressures[k * pack_width + i] = rigid ? std::max(0.0, pressure[i]) : start.pressure[i];
-    }
-    double finer = 0, coarse = 0;
-    for (std::size_t k = 0; k < fine.nodes.size(); ++k) finer += fine.weights[k] * pressures[k];
-    for (int k = 0; k < count; ++k) coarse += own.rule->weights[k] * pressures[fine.nodes.size() + k];
-    if (finer > 0) error = std::max(error, caution * std::fabs(coarse / finer - 1));
-    if (own.voltage == 0) break;
-  }
-  return error;
+  each_pack([&](const Block& block, std::size_t k) {
+    float_free(block, k);
+    physics::record_loads(system_.shape(), system_.pack(k), block.segments.constants.voltage, outcomes_[k]);
+  });
 }
 
 }  // namespace gaiter::solvers

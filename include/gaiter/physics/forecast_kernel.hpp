@@ -30,14 +30,17 @@ struct ForecastInput {
   Pack pressure_limit;      // beyond which the bandage is slack [Pa]
   std::array<Pack, 4> leg;  // a, b, c, d of the strain law; neo-Hookean: K, G/3, K + G/3 [Pa]
   std::vector<Term> terms;
+  std::array<Pack, 2> wall_ratio;  // A^2/s at the points of the wall, by close()
   model::LegMaterial material = model::LegMaterial::compliance;
+
+  void close();  // once all else is given
 };
 
 // Of one state, at rest or under voltage; see SegmentForecast::State.
 struct ForecastState {
-  Pack rigid, first, pressure, passive, slope, gain, bending, strain, response;
-  // At the narrow and the wide end, on the leg without pressure; under voltage only.
-  Pack lowest, highest;
+  Pack rigid, first, pressure, passive, slope, gain, strain, response;
+  Pack narrow_net, wide_net;  // at the ends, on the leg without pressure; negative: open
+  Pack narrow;                // at the narrow end
 };
 
 // Error of a Gauss rule for the mean of the pressure, leading order and, for more than some points, the size
@@ -46,11 +49,13 @@ struct ForecastErrors {
   std::array<Pack, forecast_points + 2> height, wall;  // [Pa]
 };
 
-// Pressure by two points through the wall; the leg's strain from a few Newton steps.
-void forecast_state(const ForecastInput& input, bool voltage, ForecastState& state);
+// Pressure by two points through the wall; the leg's strain from a few Newton steps. `rest`: the state without
+// voltage, if it is known, to start from.
+void forecast_state(const ForecastInput& input, bool voltage, const ForecastState* rest,
+                    ForecastState& state);
 
-// At the leg's strain of that state.
-void forecast_errors(const ForecastInput& input, const ForecastState& rest, ForecastErrors& errors);
+// At a strain of the leg.
+void forecast_errors(const ForecastInput& input, const Pack& strain, ForecastErrors& errors);
 
 // Relative change of the mean pressure if the tube slides (or, held, lies on the slope); NaN: beyond the
 // first order. Thin wall, leg that does not give way. With w(r, z') the tube's energy per reference height,

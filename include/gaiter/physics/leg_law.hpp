@@ -4,6 +4,7 @@
 #include <array>
 
 #include "gaiter/model/leg.hpp"
+#include "gaiter/physics/vector_math.hpp"
 
 namespace gaiter::physics {
 
@@ -23,5 +24,21 @@ LegConstants leg_constants(const model::Leg& leg, const model::Segment& segment)
 // strains or such of 1 and beyond count as almost 1. For a strain below that of no pressure the result is not
 // positive.
 double pressure_bound(const model::Leg& leg, const LegConstants& constants, double strain);
+
+// The same of either law, for loops over packs: from a and a + c; from K/S and G/(3S).
+constexpr double bound_rounding = 1 + 1e-9;
+
+inline double strain_law_pressure_bound(double a, double strain_of_none, double strain) {
+  // a exp(bP) = strain - c exp(dP), where c <= 0 and the second exponential is between 0 and 1.
+  const double reached = strain < 1 ? strain : 1;
+  const double beyond = reached > strain_of_none ? reached - strain_of_none : 0;
+  return std::log1p(beyond / a) * bound_rounding;
+}
+
+inline double neo_hookean_pressure_bound(double bulk, double shear, double strain) {
+  const double reached = strain < 0.99 ? strain : 0.99;
+  const double power = std::exp(-10.0 / 3 * std::log(1 - reached));
+  return reached * (2 - reached) * (bulk + shear * power) * bound_rounding;
+}
 
 }  // namespace gaiter::physics

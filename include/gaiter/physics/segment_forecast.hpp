@@ -53,6 +53,9 @@ class SegmentForecast {
   double volume_factor() const;
 
  private:
+  struct Pole {
+    double size = 0, fall = 0;  // the error of n points is size fall^n
+  };
   // At rest or under voltage, at mid-height.
   struct State {
     bool wanted = true;
@@ -61,16 +64,20 @@ class SegmentForecast {
     double passive = 0;  // the pressure without the relief by the voltage, at the same radius [Pa]
     double slope = 0;    // d P / d ln R of the bandage [Pa]
     double gain = 0;     // slope times the leg's response to pressure
-    double bending = 0;  // |eps''/eps'| of the leg [1/Pa]
     double strain = 0, response = 0;  // eps and eps' [1, 1/Pa]
     double sliding = 0;
-    bool narrow_end_open = false, wide_end_open = false;
+    double narrow = 0;  // pressure at the narrow end [Pa]
+    std::array<Pole, 2> poles{};
+    bool lower_end_open = false, upper_end_open = false;
   };
 
   void put(ForecastInput& input, int lane) const;
-  void take(const ForecastState& found, int lane, State& state, bool voltage) const;
+  void take(const ForecastState& found, int lane, State& state) const;
   void find_cuts();
   double net_pressure(double height, bool voltage) const;
+  double spread(const State& state, double power) const;
+  void find_poles(State& state) const;
+  double leg_error(const State& state, int slices) const;
   double height_error(const State& state, int slices) const;
   template <typename Measure>
   double worst(Measure&& measure) const;
@@ -86,11 +93,5 @@ class SegmentForecast {
   std::vector<double> cuts_;
   bool open_everywhere_ = false;
 };
-
-// Error of the n-point Gauss rule for the mean of a function whose Legendre coefficients end with `last`
-// (degrees degree - 2, degree - 1, degree), carried on to degree 2n, which the rule is the first to get
-// wrong. Ratios of neighbours fall like those of an exponential, but never below those of a function with a
-// pole at the distance 1/closeness (in half lengths of the interval).
-double gauss_tail(const std::array<double, 3>& last, int degree, double closeness, int points);
 
 }  // namespace gaiter::physics

@@ -2,36 +2,33 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "gaiter/model/result.hpp"
-#include "gaiter/physics/quadrature.hpp"
+#include "gaiter/physics/segment_pack.hpp"
+#include "gaiter/physics/slice_outcome.hpp"
 
 namespace gaiter::physics {
 
-// What became of one slice, SI.
-struct SliceOutcome {
-  double leg_radius = 0;               // undeformed [m]
-  double reference_radius = 0;         // of the bandage: flat length / (2 pi) [m]
-  double pressure_rest_rigid = 0;      // [Pa]
-  double pressure_actuated_rigid = 0;  // [Pa]
-  double pressure_rest = 0;            // [Pa]
-  double pressure_actuated = 0;        // [Pa]
-  double radius_rest = 0;              // of the leg [m]
-  double radius_actuated = 0;          // of the leg [m]
-  double strain_actuated = 0;          // of the leg: 1 - radius_actuated / leg_radius with all its digits [1]
-  double bandage_radius_rest = 0;      // inner face; larger than the leg's where they do not touch [m]
-  double bandage_radius_actuated = 0;  // the leg's where the bandage has none (pulled in) [m]
-  double actuation_pressure = 0;       // Eq. (8) at the actuated radius [Pa]
-  double electric_field = 0;           // [V/m]
-  int iterations = 0;
-  model::Status status = model::Status::contact;
-};
+// Height averages and the like of the segments of a pack, to results.
+class SegmentSummary {
+ public:
+  // From the segments' slices over the height, a pack of each segment's next one, and their weights.
+  SegmentSummary(std::span<const SliceOutcomes> slices, std::span<const Pack> weights,
+                 const SegmentPack& segments);
 
-// Segment result from its slices at the nodes of `rule` over the height. All numbers but the initial volume
-// and the rigid pressures are NaN where a slice has no trustworthy result, the field also where one is pulled
-// in. `quadrature_error` becomes the discretisation error.
-model::SegmentResult summarise(std::span<const SliceOutcome> slices, const Quadrature& rule, double height,
-                               double quadrature_error);
+  // Of one segment. All numbers but the initial volume and the rigid pressures are NaN where a slice has no
+  // trustworthy result, the field also where one is pulled in. `quadrature_error` becomes the discretisation error.
+  model::SegmentResult result(int place, double quadrature_error) const;
+
+ private:
+  void add(const SliceOutcomes& slice, const Pack& weights);
+  void finish(const SegmentPack& segments);
+
+  Pack status_{}, iterations_{}, field_{};
+  Pack rest_rigid_{}, actuated_rigid_{}, rest_{}, actuated_{}, actuation_{};  // pressures
+  Pack rest_force_{}, actuated_force_{}, rest_area_{}, actuated_area_{};      // over 2 pi, a height
+  Pack volume_initial_{}, volume_rest_{}, volume_actuated_{}, volume_change_{};
+  Pack radius_{}, stretch_{};
+};
 
 }  // namespace gaiter::physics

@@ -30,8 +30,9 @@ struct PackState {
 void start_at_rest(const SliceShape& shape, const Pack* rows, PackState& state, Pack& rigid_pressure);
 
 // Actuated: from the rest state held in `state`. The root sought is the largest below the pressure at rest,
-// which is the one that a slowly rising voltage reaches.
-void start_actuated(PackState& state);
+// which is the one that a slowly rising voltage reaches. The residual is the actuation pressure, since the
+// rest is in equilibrium; so it comes with the start.
+void start_actuated(const SliceShape& shape, const Pack* rows, PackState& state);
 
 // The paper's start: the undeformed leg at rest; under voltage the radius at rest, held in `state`.
 void start_fixed_point(bool at_rest, PackState& state);

@@ -8,6 +8,7 @@
 #include "gaiter/model/scene.hpp"
 #include "gaiter/physics/leg_law.hpp"
 #include "gaiter/physics/quadrature.hpp"
+#include "gaiter/physics/segment_pack.hpp"
 #include "gaiter/physics/vector_math.hpp"
 
 namespace gaiter::physics {
@@ -74,12 +75,10 @@ class SliceSystem {
            const model::Bandage& bandage, const Wall& wall, double leg_radius, double voltage,
            const Quadrature* wall_rule = nullptr);
 
-  // Constants of the slices `first`, `first` + 1, ... of one segment, at heights from 0 to 1. The same as
-  // set() for each of them, but what they have in common is worked out once. `radii` take the leg's radius at
-  // each. `wall_rule` as above.
-  void set_segment(std::size_t first, std::span<const double> heights, const model::Leg& leg,
-                   const model::Segment& segment, const model::Bandage& bandage, const model::Module& module,
-                   const Quadrature& wall_rule, std::span<double> radii);
+  // Constants of the slices of up to 64 segments: the packs `first_pack`, `first_pack` + 1, ... take those at
+  // a height from 0 to 1 of each, a segment a place. `radii` take the leg's radius.
+  void set_segments(std::size_t first_pack, std::span<const Pack> heights, const SegmentPack& segments,
+                    std::span<Pack> radii);
 
   // With the voltage on, or off as if there were none (the rest state).
   void energise(bool on) { shape_.layers = on ? layers_ : 0; }
@@ -98,10 +97,7 @@ class SliceSystem {
     return rows_[slice / pack_width * rows_per_pack_ + row][slice % pack_width];
   }
 
-  void set_slice(std::size_t index, const model::Leg& leg, const LegConstants& constants, const Wall& wall,
-                 double leg_radius);
-  void set_common(std::size_t first, std::size_t count, const LegConstants& constants,
-                  const model::Bandage& bandage, const Wall& wall, double voltage, const Quadrature& rule);
+  void set_wall_points(Pack* rows, int place, const Quadrature& rule) const;
   void repeat_last(std::size_t end);
 
   SliceShape shape_;

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 
 #include "gaiter/model/scene.hpp"
+#include "gaiter/physics/segment_pack.hpp"
 
 namespace gaiter::physics {
 
@@ -12,8 +14,11 @@ struct WallChoice {
   double error = 0;  // of the quadrature, relative [1]
 };
 
-// Gauss points through the wall of a module that make the quadrature error of its pressure smaller than
-// `tolerance`, a priori, and that error for a given number of points [1].
+// Gauss points through the walls of segments that make the quadrature error of their pressures smaller than
+// `tolerance`, a priori, where wall_points is 0; and that error for the points chosen or given [1].
+void choose_wall_points(std::span<SegmentNumbers> segments, double tolerance);
+
+// The same for one module.
 WallChoice wall_points_for(const model::Scene& scene, std::size_t segment, double tolerance);
 double wall_error(const model::Scene& scene, std::size_t segment, int points);
 

@@ -3,7 +3,6 @@
 
 #include <mpi.h>
 
-#include <deque>
 #include <map>
 #include <memory>
 #include <span>
@@ -56,20 +55,23 @@ class SliceModel {
   std::span<const model::SegmentResult> solve(std::span<const SegmentTask> tasks);
 
  private:
-  // What is kept of a task while its batch is solved.
-  struct Task {
-    std::size_t first = 0, end = 0;                  // its slices
-    const physics::Quadrature* rule = nullptr;       // over the height
-    const physics::Quadrature* wall_rule = nullptr;  // through the wall
-    double wall_error = 0, voltage = 0;
-    const physics::SegmentForecast* forecast = nullptr;  // without a plan
-    int wall_points = 0, pieces = 1;
-    double data_limit = 0;  // pressure beyond which results are extrapolated [Pa]
-    bool stiffens = false;  // one equilibrium at rest, whatever the pressure
+  // Up to 64 segments with equally many slices. The first slices of all are a pack, and so on.
+  struct Block {
+    std::size_t first_pack = 0;
+    const physics::Quadrature* rule = nullptr;  // over the height, or over each piece of it
+    int pieces = 1;
+    std::vector<physics::Pack> heights, weights;  // of the slices
+    std::vector<std::size_t> tasks;               // one a place
+    physics::SegmentPack segments;
+
+    std::size_t end_pack() const { return first_pack + heights.size(); }
   };
 
-  void forecast(std::span<const SegmentTask> tasks);
+  void forecast();
   void take(std::span<const SegmentTask> tasks);
+  void arrange();
+  void lay_slices(Block& block);
+  void set_segments(std::span<const std::size_t> tasks, physics::SegmentPack& segments);
   void prepare_solver(model::SliceSolver algorithm, double tolerance);
   void rigid_pressures();
   void solve_rigid();
@@ -77,39 +79,43 @@ class SliceModel {
   void rest();
   void actuate();
   void solve_doubtful(bool at_rest);
-  void record(bool at_rest);
-  void float_free(std::size_t slice);
+  void float_free(const Block& block, std::size_t pack);
   void finish_actuated();
-  double height_error(const SegmentTask& task, const Task& own, model::Fidelity fidelity);
-  double height_error_of_pieces(const SegmentTask& task, const Task& own, bool actuated);
-  double height_error_of_start(const SegmentTask& task, const Task& own, bool rigid);
-  double model_error(const SegmentTask& task, const Task& own, model::Fidelity fidelity);
-  const physics::Quadrature& cut_rule(const SlicePlan& plan);
+  void summarise(model::Fidelity fidelity);
+  double model_error(std::size_t task, model::Fidelity fidelity) const;
+  void height_errors(const Block& block);
+  void errors_of_start(bool rigid);
+  void errors_of_start(std::span<const std::size_t> tasks, bool rigid);
   const physics::Quadrature& height_rule(model::SliceRule rule, int count);
   const physics::Quadrature& wall_rule(int points);
   template <typename Action>
-  void each_slice(Action&& action);  // action(slice, task, its pack, its place in the pack)
+  void each_pack(Action&& action) {  // action(block, pack)
+    for (const Block& block : blocks_)
+      for (std::size_t k = block.first_pack; k < block.end_pack(); ++k) action(block, k);
+  }
 
   MPI_Comm comm_;
   std::map<std::pair<model::SliceRule, int>, physics::Quadrature> height_rules_;
   std::map<int, physics::Quadrature> wall_rules_;
-  std::deque<physics::Quadrature> cut_rules_;  // of the batch's tasks
   std::unique_ptr<SliceSolver> solver_;
   model::SliceSolver algorithm_ = model::SliceSolver::newton;  // of the solver
   double fixed_point_tolerance_ = 0;                           // likewise
 
   // Of the batch at hand.
-  std::vector<Task> tasks_;
-  std::vector<physics::SegmentForecast> forecasts_;  // of the tasks without a plan
+  std::span<const SegmentTask> tasks_;
+  std::vector<physics::SegmentNumbers> numbers_;     // of each task
+  std::vector<physics::SegmentForecast> forecasts_;  // likewise, unless they have plans
+  std::vector<Block> blocks_;
   bool energised_ = false;  // somewhere, on any rank
   bool newton_ = true;      // all ranks agree, those without tasks too
   physics::SliceSystem system_;
   std::vector<physics::PackState> states_;
-  std::vector<physics::SliceOutcome> outcomes_;
+  std::vector<physics::SliceOutcomes> outcomes_;
   std::vector<physics::Pack> rigid_pressure_, rest_pressure_;
-  std::vector<std::size_t> owner_;  // of each slice: its task
-  std::vector<double> pressures_;   // of one task
-  std::vector<double> radii_;       // of the leg at each slice
+  std::vector<physics::Pack> radii_;  // of the leg at each slice
+  std::vector<double> height_error_;  // of each task
+  std::vector<std::size_t> unclear_;  // tasks whose pressures do not tell that error
+  physics::SliceSystem check_;        // their slices at more heights
   std::vector<model::SegmentResult> results_;
 };
 

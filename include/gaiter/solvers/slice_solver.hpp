@@ -31,15 +31,16 @@ class SliceSolver : public BatchSolver {
 
   std::size_t packs() const { return packs_; }
 
-  // Sets the iterate of one pack.
+  // Sets the iterate of one pack, and its residual and slopes if these are `known`.
   using Start = std::function<void(std::size_t pack)>;
+  enum class FirstResidual { evaluated, known };
 
   // @note Collective. `states`, a pack each, take the solution; they hold the started iterates, or `start`
   // sets them. Slices that are not open stay as they are. The system may have fewer packs than the solver,
   // none too.
   SliceReport solve(
       const physics::SliceSystem& system, std::vector<physics::PackState>& states,
-      const Start& start = [](std::size_t) {});
+      const Start& start = [](std::size_t) {}, FirstResidual first = FirstResidual::evaluated);
 
  private:
   // A pack that is worked on: one of the system, or slices gathered from several.
@@ -61,7 +62,7 @@ class SliceSolver : public BatchSolver {
 
   PetscErrorCode create(MPI_Comm comm);
   PetscErrorCode create_matrix(MPI_Comm comm);
-  PetscErrorCode run(const Start& start, SliceReport& report);
+  PetscErrorCode run(const Start& start, FirstResidual first, SliceReport& report);
   void gather_open();
   void put_back();
 
