@@ -96,6 +96,16 @@ void evaluate_residual(const SliceShape& shape, const Pack* rows, PackState& sta
   }
 }
 
+void evaluate_open(const SliceShape& shape, const Pack* rows, PackState& state) {
+  const Pack strain_slope = state.strain_slope, bandage_slope = state.bandage_slope;
+  evaluate_residual(shape, rows, state);
+  GAITER_EACH {
+    const bool open = state.open[i] > 0;
+    state.strain_slope[i] = open ? state.strain_slope[i] : strain_slope[i];
+    state.bandage_slope[i] = open ? state.bandage_slope[i] : bandage_slope[i];
+  }
+}
+
 GAITER_MULTIVERSION
 void solve_blocks(const Pack& strain_slope, const Pack& bandage_slope, const Pack& strain_residual,
                   const Pack& pressure_residual, Pack& strain_direction, Pack& pressure_direction) {

@@ -122,7 +122,7 @@ PetscErrorCode SliceSolver::run(const Start& start, FirstResidual first, SliceRe
     if (open > 0) {
       work_.push_back({system_->pack(k), &state, pack_width * k, nullptr, pack_width});
       if (first == FirstResidual::evaluated)
-        physics::evaluate_residual(system_->shape(), system_->pack(k), state);
+        physics::evaluate_open(system_->shape(), system_->pack(k), state);
       write_pairs(state.strain_residual, state.pressure_residual, residual + place);
     } else {
       std::fill_n(residual + place, 2 * pack_width, 0.0);

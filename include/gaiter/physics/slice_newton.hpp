@@ -40,6 +40,10 @@ void start_fixed_point(bool at_rest, PackState& state);
 // Residual and Jacobian at the iterate, on F1 = 0 or not.
 void evaluate_residual(const SliceShape& shape, const Pack* rows, PackState& state);
 
+// The same of the open slices. A closed one keeps its slopes, from which the voltage starts: they must not
+// depend on whether a neighbour is solved again.
+void evaluate_open(const SliceShape& shape, const Pack* rows, PackState& state);
+
 // Newton directions y = J^-1 F of (F1, F2) given.
 void solve_blocks(const Pack& strain_slope, const Pack& bandage_slope, const Pack& strain_residual,
                   const Pack& pressure_residual, Pack& strain_direction, Pack& pressure_direction);
