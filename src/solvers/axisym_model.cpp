@@ -149,7 +149,7 @@ std::vector<model::SegmentResult> solve_piece(MPI_Comm comm, const Piece& piece,
   for (std::size_t k = 0; k < fine.rest.size(); ++k)
     results.push_back(result_of(scene, piece.first + k, fine.rest[k], fine.actuated[k], length, unit));
   for (std::size_t k = 0; k < fine.pressure_error.size(); ++k)
-    results[k].error_estimate = fine.pressure_error[k];
+    results[k].discretisation_error = results[k].error_estimate = fine.pressure_error[k];
   if (!fine.rest[0].converged || refine == 0) return results;
   const Solved coarse =
       solve_states(comm, {scene, piece.first, piece.last, fine.converged()}, refine - 1, false);
