@@ -25,3 +25,7 @@ gaiter_add_test(sliding_reference_trust_region LABEL cross TIMEOUT 300
                 COMMAND sliding_reference -sliding_snes_type newtontr)
 gaiter_add_test(sliding_reference_krylov LABEL cross TIMEOUT 300
                 COMMAND sliding_reference -sliding_ksp_type gmres -sliding_ksp_rtol 1e-10)
+
+# The estimate of what slices leave out, against finite elements.
+gaiter_sliding_test(model_shifts LABEL cross RANKS 1)
+target_link_libraries(model_shifts PRIVATE Boost::headers)

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "gaiter/physics/height_error.hpp"
+#include "gaiter/physics/model_error.hpp"
 #include "gaiter/physics/segment_forecast.hpp"
 #include "gaiter/solvers/axisym_model.hpp"
 #include "gaiter/solvers/sliding_model.hpp"
@@ -25,6 +26,8 @@ constexpr double strict_tolerance = 5e-5;  // below which few slices are not tru
 constexpr int most_sliding_slices = 192;
 constexpr int most_refinements = 3;
 constexpr double shares_model = 0.7;  // of the tolerance that the model's error may take
+constexpr double share_of_slices = 0.3;  // of the goal, for slices that finer models' errors are added to
+constexpr double caution_of_sliding = 2;  // where sliding slices are the truth
 
 // Measured on one core of a 2.1 GHz x86-64 server, batches of some hundred segments [s]; of a slice in one
 // state, and of its pressure at one wall point, per Ogden term.
@@ -76,66 +79,101 @@ void choose_points(const SegmentForecast& forecast, double tolerance, SlicePlan&
   plan.height_error = forecast.height_error(plan.slice_count);
 }
 
-SlicePlan plan_for(const model::Scene& scene, std::size_t segment, SegmentForecast& forecast) {
+// Rigid leg, first order or slices, to a tolerance of the pressures.
+SlicePlan plan_slices(const model::Scene& scene, std::size_t segment, const SegmentForecast& forecast,
+                      double tolerance) {
   const model::Goal& goal = scene.goal;
-  forecast.want(goal.pressure_rest || goal.actuation_drop, goal.actuated());
-  const double tolerance = goal.accuracy / worst_factor(goal, forecast);
-
   SlicePlan plan;
   plan.actuated = goal.actuated();
   plan.cuts = forecast.cuts();
-  const bool cylinder = scene.leg.segments[segment].lower_radius == scene.leg.segments[segment].upper_radius;
-  const double sliding = forecast.sliding_error();
-  // Beyond slices, what sliding changes must be small; beyond sliding slices, the ends of the segment and the
-  // shear of the leg, of which only a cylinder is known to have none.
-  const bool slices_do = goal.up_to == Fidelity::slice || cylinder ||
-                         (goal.up_to == Fidelity::sliding && sliding < shares_model * tolerance);
-  const double beyond = goal.up_to == Fidelity::slice || cylinder ? 0 : sliding;
-  plan.change_beyond = sliding;
-  if (slices_do) {
-    const bool rigid_leg = scene.leg.model == model::LegModel::rigid;
-    const bool sure = plan.cuts.empty() && !forecast.open_everywhere();
-    plan.fidelity = Fidelity::slice;
-    plan.model_error = beyond;
-    const double rigid = forecast.compliance_error(), first = forecast.first_order_error();
-    if (rigid_leg) {
-      plan.fidelity = Fidelity::rigid;
-    } else if (sure && !goal.volume_change && beyond + rigid < shares_model * tolerance) {
-      plan.fidelity = Fidelity::rigid;
-      plan.model_error += rigid;
-      plan.change_beyond += rigid;
-    } else if (sure && beyond + first < shares_model * tolerance && tolerance >= strict_tolerance) {
-      plan.fidelity = Fidelity::first_order;
-      plan.model_error += first;
-      plan.change_beyond += first;
-    }
-    plan.tolerance = tolerance - plan.model_error;
-    choose_points(forecast, plan.tolerance, plan);
-  } else if (goal.up_to == Fidelity::sliding) {
-    plan.fidelity = Fidelity::sliding;
-    plan.tolerance = tolerance;
-    plan.cuts.clear();
-    choose_points(forecast, tolerance, plan);
-    plan.slice_count = tolerance < 1e-2 ? 24 : 9;
-  } else {
-    plan.fidelity = Fidelity::axisym;
-    plan.tolerance = tolerance;
-    plan.cuts.clear();
-    plan.wall_points = 0;
-    plan.slice_count = tolerance < 1e-3 ? 2 : 1;  // refinements
-    plan.height_error = std::numeric_limits<double>::quiet_NaN();
+  plan.change_beyond = forecast.sliding_error();
+  const bool sure = plan.cuts.empty() && !forecast.open_everywhere();
+  const double rigid = forecast.compliance_error(), first = forecast.first_order_error();
+  if (scene.leg.model == model::LegModel::rigid) {
+    plan.fidelity = Fidelity::rigid;
+  } else if (sure && !goal.volume_change && rigid < shares_model * tolerance) {
+    plan.fidelity = Fidelity::rigid;
+    plan.model_error = rigid;
+  } else if (sure && first < shares_model * tolerance && tolerance >= strict_tolerance) {
+    plan.fidelity = Fidelity::first_order;
+    plan.model_error = first;
   }
-  if (plan.fidelity == Fidelity::sliding) plan.height_error = std::numeric_limits<double>::quiet_NaN();
+  plan.change_beyond += plan.model_error;
+  plan.tolerance = tolerance - plan.model_error;
+  choose_points(forecast, plan.tolerance, plan);
   plan.cost = plan_cost(scene, segment, plan);
   return plan;
 }
 
+SlicePlan plan_for(const model::Scene& scene, std::size_t segment, SegmentForecast& forecast) {
+  const model::Goal& goal = scene.goal;
+  forecast.want(goal.pressure_rest || goal.actuation_drop, goal.actuated());
+  const double factor = worst_factor(goal, forecast);
+  const double share = goal.up_to == Fidelity::slice ? 1 : share_of_slices;
+  SlicePlan plan = plan_slices(scene, segment, forecast, share * goal.accuracy / factor);
+  plan.factor = factor;
+  return plan;
+}
+
+// Of the wanted outputs, against the finest model that the goal allows.
+double of_wanted(const model::Goal& goal, const physics::ModelError& error) {
+  double worst = 0;
+  if (goal.pressure_rest) worst = std::max(worst, error.pressure_rest);
+  if (goal.pressure_actuated) worst = std::max(worst, error.pressure_actuated);
+  if (goal.actuation_drop) worst = std::max(worst, error.actuation_drop);
+  if (goal.volume_change) worst = std::max(worst, error.volume_change);
+  return worst;
+}
+
 }  // namespace
+
+SlicePlan climb(const model::Scene& scene, std::size_t segment, const SlicePlan& slices,
+                const model::SegmentResult& result) {
+  const model::Goal& goal = scene.goal;
+  const physics::ModelErrors errors = physics::model_errors(scene, segment, result);
+  const bool sliding_only = goal.up_to == Fidelity::sliding;
+  double of_slices = of_wanted(goal, errors.slice);
+  const double of_sliding = sliding_only ? 0 : of_wanted(goal, errors.sliding);
+  if (sliding_only) {
+    SegmentForecast forecast(scene, segment);
+    SegmentForecast::analyse({&forecast, 1}, SegmentForecast::Depth::sliding);
+    forecast.want(goal.pressure_rest || goal.actuation_drop, goal.actuated());
+    of_slices = caution_of_sliding * slices.factor * forecast.sliding_error();
+  }
+  SlicePlan plan = slices;
+  const double own = slices.factor * (result.discretisation_error + slices.model_error);
+  if (own + of_slices <= goal.accuracy) {
+    plan.model_error += of_slices / slices.factor;
+    plan.change_beyond = plan.model_error;
+    return plan;
+  }
+  plan.cuts.clear();
+  plan.height_error = std::numeric_limits<double>::quiet_NaN();
+  if (of_sliding <= shares_model * goal.accuracy) {
+    plan.fidelity = Fidelity::sliding;
+    plan.model_error = of_sliding / slices.factor;
+    plan.change_beyond = sliding_only ? std::numeric_limits<double>::quiet_NaN() : plan.model_error;
+    plan.tolerance = (goal.accuracy - of_sliding) / slices.factor;
+    plan.slice_count = plan.tolerance < 1e-2 ? 24 : 9;
+  } else {
+    plan.fidelity = Fidelity::axisym;
+    plan.model_error = plan.change_beyond = 0;
+    plan.tolerance = goal.accuracy / slices.factor;
+    plan.wall_points = 0;
+    plan.slice_count = 0;  // refinements
+  }
+  plan.cost += plan_cost(scene, segment, plan);
+  return plan;
+}
 
 SlicePlan plan_segment(const model::Scene& scene, std::size_t segment) {
   SegmentForecast forecast(scene, segment);
   forecast.analyse();
-  return plan_for(scene, segment, forecast);
+  SlicePlan plan = plan_for(scene, segment, forecast);
+  if (scene.goal.up_to == Fidelity::slice) return plan;
+  const SegmentTask task{&scene, segment, &plan};
+  const model::SegmentResult result = solve_segments(PETSC_COMM_SELF, {&task, 1})[0];
+  return climb(scene, segment, plan, result);
 }
 
 void plan_segments(std::span<const SegmentTask> tasks, std::vector<SlicePlan>& plans) {
@@ -202,9 +240,19 @@ std::span<const model::SegmentResult> AutoModel::solve(std::span<const SegmentTa
           .push_back(t);
     for (const auto& [key, chosen] : groups) solve_group(tasks, chosen);
     std::erase_if(open, [&](std::size_t t) {
-      if (!refine(plans_[t], results_[t])) return true;
-      plans_[t].cost += plan_cost(*tasks[t].scene, tasks[t].segment, plans_[t]);
-      return false;
+      SlicePlan& plan = plans_[t];
+      if (refine(plan, results_[t])) {
+        plan.cost += plan_cost(*tasks[t].scene, tasks[t].segment, plan);
+        return false;
+      }
+      const Fidelity solved = plan.fidelity, up_to = tasks[t].scene->goal.up_to;
+      if (up_to == Fidelity::slice || solved == Fidelity::sliding || solved == Fidelity::axisym) return true;
+      // Where slices have no answer, finer models may have none either, and cost far more.
+      if (!model::trustworthy(results_[t].status) || !(results_[t].pressure_rest > 0)) return true;
+      plan = climb(*tasks[t].scene, tasks[t].segment, plan, results_[t]);
+      results_[t].model_error = plan.change_beyond;
+      model::derive_error(results_[t]);
+      return plan.fidelity == solved;
     });
   }
   constexpr double none = std::numeric_limits<double>::quiet_NaN();

@@ -14,11 +14,14 @@ namespace {
 
 constexpr std::size_t slices_in_batch = 6144;   // their constants and states are some 3 MB
 constexpr std::size_t segments_in_batch = 256;  // sliding
+constexpr std::size_t planned_in_batch = 2048;  // segments: of some ten kinds of plan, each in packs of 64
 
 // Designs that go into one batch.
 std::size_t batch_designs(const model::Scene& scene) {
   const std::size_t segments = scene.leg.segments.size();
   if (may_take_axisym(scene)) return 1;
+  if (scene.fidelity == model::Fidelity::automatic && scene.goal.up_to == model::Fidelity::slice)
+    return std::max<std::size_t>(1, planned_in_batch / segments);
   if (scene.fidelity == model::Fidelity::sliding || scene.fidelity == model::Fidelity::automatic)
     return std::max<std::size_t>(1, segments_in_batch / segments);
   const std::size_t slices = segments * static_cast<std::size_t>(scene.discretisation.slice_count);

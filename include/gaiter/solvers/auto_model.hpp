@@ -10,21 +10,27 @@
 
 namespace gaiter::solvers {
 
-// The cheapest model of one segment that should reach the scene's goal, by the forecast of its errors alone:
-// rigid leg, first-order correction, slices with the fewest points over the height and through the wall,
-// sliding slices, finite elements. Where the goal's finest model is no better than the forecast allows, that
-// one is taken. The `cost` is a fit to measurements on one core (benchmarks/auto_study).
+// The cheapest model of one segment that should reach the scene's goal: rigid leg, first-order correction,
+// slices with the fewest points over the height and through the wall, by the forecast of their errors alone;
+// then, where the goal allows more than slices, by climb() from these, which are solved for it. The `cost` is a
+// fit to measurements on one core (benchmarks/auto_study).
 SlicePlan plan_segment(const model::Scene& scene, std::size_t segment);
-// The same for many, whose scenes have the same leg material and number of Ogden terms: 64 cost little more
+// Without that last step, for many, whose scenes have the same leg material and number of Ogden terms: 64 cost little more
 // than one.
 void plan_segments(std::span<const SegmentTask> tasks, std::vector<SlicePlan>& plans);
+
+// From a plan's result by slices, or something simpler: the same plan if finer models would change no wanted
+// output by more than the goal leaves (physics::model_errors), else sliding slices or, where these would not
+// do either, finite elements on the coarsest mesh.
+SlicePlan climb(const model::Scene& scene, std::size_t segment, const SlicePlan& slices,
+                const model::SegmentResult& result);
 
 // What one solve by a plan should take [s]; planning itself takes planning_cost.
 double plan_cost(const model::Scene& scene, std::size_t segment, const SlicePlan& plan);
 constexpr double planning_cost = 0.9e-6;  // [s]
 
 // Segments that each go by their plan. Slices whose own pressures, once solved, tell of a larger error than
-// the goal allows are solved again with more of them, and likewise sliding slices and finite elements; what
+// the goal allows are solved again with more of them, and likewise sliding slices and finite elements (whose mesh is refined); what
 // is not wanted is not computed and NaN. Results do not depend on what else is in a batch.
 class AutoModel {
  public:

@@ -28,6 +28,7 @@ struct SlicePlan {
   double model_error = 0;    // against the finest model that the goal allows
   double change_beyond = 0;  // by the models beyond this one, allowed or not; NaN: not known
   double tolerance = 0;      // of the discretisation
+  double factor = 1;         // errors of the wanted outputs over those of the pressures
   double cost = 0;           // predicted [s]
   bool actuated = true;  // false: the state under voltage is not wanted
 };

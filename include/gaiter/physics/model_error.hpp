@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-2-Clause
+#pragma once
+
+#include "gaiter/model/result.hpp"
+
+// How far slices and sliding slices are from the axisymmetric finite elements, estimated from the slices'
+// result alone in some 0.2 microseconds: to leading order in the slope m of the leg, in closed form.
+//
+// Three effects, all of the order m^2, change the mean pressure of a segment of height H, radius R and slope
+// m; tau is the tension along the tube over that around it, K the change of the tube's axial stretch per
+// m H/R from one end to the other:
+//   sliding  (m H/R)^2/12 [K^2/2 (p_y + p_yy + p_y^2) - K (p_yx + p_x p_y)]: the axial equilibrium,
+//   linearised
+//            about the tube as laid on, A z'' = m (contact pressure less d tension / d radius), moves the
+//            tube by a parabola, which changes the pressure of each slice;
+//   slope    m^2/2 d ln(hoop force)/d ln(axial stretch): the tube is longer along the slope than H;
+//   ends     -m^2 tau: a cone presses less by 1/(1 + m^2) than the rings it is made of, and the difference
+//            acts as line loads, m times the tension, on its two ends.
+// Sliding slices have the first two, finite elements all three, plain slices none; if nothing slides
+// (ContactAxial::held) the first is gone. p_x and p_y are derivatives of ln P of the slices with respect to
+// the logarithms of radius and axial stretch. The volume follows likewise. What is of higher order, and the
+// shear of the leg, which none of this has, is bounded by factors that benchmarks/model_map.py fits to finite
+// elements. Tests: tests/model_shifts.cpp.
+namespace gaiter::physics {
+
+// Relative changes of one output that the effects make, signed.
+struct ModelShift {
+  double sliding = 0;  // slides along the taper, free of friction
+  double slope = 0;    // is as long as the slope
+  double ends = 0;     // loses its tension at the ends
+
+  double all() const { return sliding + slope + ends; }
+};
+
+// Of the state at rest and the actuated one.
+struct ModelShifts {
+  ModelShift pressure_rest, pressure_actuated, volume_rest, volume_actuated;
+  bool known = false;  // false: outside of what was calibrated; all numbers may be wrong
+};
+
+// Estimated relative errors, against finite elements, of what a model computes; infinity: unknown.
+struct ModelError {
+  double pressure_rest = 0, pressure_actuated = 0;
+  double actuation_drop = 0;
+  double volume_change = 0;
+};
+
+struct ModelErrors {
+  ModelError slice, sliding;
+};
+
+// `slices`: what plain slices say of that segment. Known for segments in contact all over, with
+// taper below 20 degrees, H/R of 0.3 to 5, |radius difference|/R below 1.2, wall/R of 0.0025 to 0.05,
+// stretch of 1.06 to 2.2, strains of the leg below 0.3, pressures below the leg's shear modulus, and
+// m H/R |K| below `largest_slide`, beyond which the frictionless tube has often no stable state.
+ModelShifts model_shifts(const model::Scene& scene, std::size_t segment, const model::SegmentResult& slices);
+ModelErrors model_errors(const model::Scene& scene, std::size_t segment, const model::SegmentResult& slices);
+
+}  // namespace gaiter::physics
