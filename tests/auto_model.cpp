@@ -185,7 +185,8 @@ TEST(Auto, GoesByTheWantedOutput) {
   EXPECT_NE(solvers::plan_segment(scene, 2).fidelity, Fidelity::rigid);
 }
 
-// Beyond slices: what sliding changes on the paper's ankle is more than 1 % at 2.2 and less than 5 % at 1.4.
+// Beyond slices: what sliding changes on the paper's ankle is more than 1 % at 2.2 and less than 5 % at 1.4;
+// there finite elements are only needed for less than what the ends of a cone change.
 TEST(Auto, SlidesWhereItMatters) {
   model::Scene scene = paper::scene(2.2, 0);
   scene.goal.up_to = Fidelity::sliding;
@@ -194,8 +195,10 @@ TEST(Auto, SlidesWhereItMatters) {
   scene = paper::scene(1.4, 0);
   scene.goal.up_to = Fidelity::sliding;
   scene.goal.accuracy = 0.05;
-  EXPECT_LT(solvers::plan_segment(scene, 0).fidelity, Fidelity::sliding);
+  EXPECT_EQ(solvers::plan_segment(scene, 0).fidelity, Fidelity::first_order);
   scene.goal.up_to = Fidelity::axisym;
+  EXPECT_NE(solvers::plan_segment(scene, 0).fidelity, Fidelity::axisym);
+  scene.goal.accuracy = 1e-4;
   EXPECT_EQ(solvers::plan_segment(scene, 0).fidelity, Fidelity::axisym);
 }
 
