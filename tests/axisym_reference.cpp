@@ -127,6 +127,19 @@ TEST(Cone, SteepOnesConvergeOnEveryMesh) {
   }
 }
 
+TEST(Cone, ErrorEstimateDoesNotDependOnTheRanks) {
+  model::Scene scene = paper::scene(1.4, 6e3);
+  scene.leg.variant = model::ComplianceVariant::anchored;
+  const solvers::SegmentTask task{&scene, 0};
+  for (int refine : {0, 1}) {
+    scene.axisym.refine = refine;
+    const double alone = solvers::solve_axisym(PETSC_COMM_SELF, {&task, 1})[0].error_estimate;
+    const double shared = solvers::solve_axisym(PETSC_COMM_WORLD, {&task, 1})[0].error_estimate;
+    EXPECT_GT(alone, 0);
+    EXPECT_NEAR(shared, alone, 1e-9 + 1e-6 * alone);
+  }
+}
+
 TEST(Cone, OrdersAgree) {
   model::Scene scene = paper::scene(1.8, 0);
   scene.leg.variant = model::ComplianceVariant::anchored;

@@ -46,6 +46,16 @@ double gauss_log_constant(int points) {
   return points < most_kept ? kept[points] : value(points);
 }
 
+double gauss_error_constant(int points) {
+  constexpr int most_kept = 16;
+  static const std::array<double, most_kept> kept = [] {
+    std::array<double, most_kept> values{};
+    for (int n = 0; n < most_kept; ++n) values[n] = std::exp(gauss_log_constant(n));
+    return values;
+  }();
+  return points < most_kept ? kept[points] : std::exp(gauss_log_constant(points));
+}
+
 double gauss_error_of_exponential(int points, double rate) {
   // |error| = rate^(2n) (n!)^4 / ((2n+1) ((2n)!)^3) exp(rate x) at some x of the interval; the integral
   // itself is at least exp(rate x) (1 - exp(-rate)) / rate for the largest of these.

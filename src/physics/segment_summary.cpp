@@ -8,39 +8,39 @@ namespace gaiter::physics {
 
 #define GAITER_EACH for (int i = 0; i < pack_width; ++i)
 
-SegmentSummary::SegmentSummary(std::span<const SliceOutcomes> slices, const Quadrature& rule,
+SegmentSummary::SegmentSummary(std::span<const SliceOutcomes> slices, std::span<const Pack> weights,
                                const SegmentPack& segments) {
-  for (std::size_t k = 0; k < slices.size(); ++k) add(slices[k], rule.weights[k]);
+  for (std::size_t k = 0; k < slices.size(); ++k) add(slices[k], weights[k]);
   finish(segments);
 }
 
 GAITER_MULTIVERSION
-void SegmentSummary::add(const SliceOutcomes& slice, double weight) {
+void SegmentSummary::add(const SliceOutcomes& slice, const Pack& weights) {
   GAITER_EACH {
     status_[i] = slice.status[i] > status_[i] ? slice.status[i] : status_[i];
     iterations_[i] = slice.iterations[i] > iterations_[i] ? slice.iterations[i] : iterations_[i];
     field_[i] = slice.electric_field[i] > field_[i] ? slice.electric_field[i] : field_[i];
-    rest_rigid_[i] += weight * slice.pressure_rest_rigid[i];
-    actuated_rigid_[i] += weight * slice.pressure_actuated_rigid[i];
-    rest_[i] += weight * slice.pressure_rest[i];
-    actuated_[i] += weight * slice.pressure_actuated[i];
-    actuation_[i] += weight * slice.actuation_pressure[i];
+    rest_rigid_[i] += weights[i] * slice.pressure_rest_rigid[i];
+    actuated_rigid_[i] += weights[i] * slice.pressure_actuated_rigid[i];
+    rest_[i] += weights[i] * slice.pressure_rest[i];
+    actuated_[i] += weights[i] * slice.pressure_actuated[i];
+    actuation_[i] += weights[i] * slice.actuation_pressure[i];
   }
   GAITER_EACH {
-    rest_force_[i] += weight * slice.pressure_rest[i] * slice.radius_rest[i];
-    actuated_force_[i] += weight * slice.pressure_actuated[i] * slice.radius_actuated[i];
-    rest_area_[i] += weight * slice.bandage_radius_rest[i];
-    actuated_area_[i] += weight * slice.bandage_radius_actuated[i];
+    rest_force_[i] += weights[i] * slice.pressure_rest[i] * slice.radius_rest[i];
+    actuated_force_[i] += weights[i] * slice.pressure_actuated[i] * slice.radius_actuated[i];
+    rest_area_[i] += weights[i] * slice.bandage_radius_rest[i];
+    actuated_area_[i] += weights[i] * slice.bandage_radius_actuated[i];
   }
   GAITER_EACH {
     const double initial = slice.leg_radius[i] * slice.leg_radius[i];
     const double strain = slice.strain_actuated[i];
-    volume_initial_[i] += weight * initial;
-    volume_rest_[i] += weight * slice.radius_rest[i] * slice.radius_rest[i];
-    volume_actuated_[i] += weight * slice.radius_actuated[i] * slice.radius_actuated[i];
+    volume_initial_[i] += weights[i] * initial;
+    volume_rest_[i] += weights[i] * slice.radius_rest[i] * slice.radius_rest[i];
+    volume_actuated_[i] += weights[i] * slice.radius_actuated[i] * slice.radius_actuated[i];
     // Formed from the strains, which a small change needs.
-    volume_change_[i] += weight * initial * strain * (2 - strain);
-    radius_[i] += weight * slice.radius_actuated[i];
+    volume_change_[i] += weights[i] * initial * strain * (2 - strain);
+    radius_[i] += weights[i] * slice.radius_actuated[i];
   }
 }
 
@@ -81,7 +81,8 @@ model::SegmentResult SegmentSummary::result(int i, double quadrature_error) cons
   result.radius_actuated = radius_[i];
   result.stretch_actual = stretch_[i];
   result.electric_field_max = status == model::Status::pulled_in ? none : field_[i];
-  result.error_estimate = quadrature_error;
+  result.discretisation_error = quadrature_error;
+  model::derive_error(result);
   return result;
 }
 

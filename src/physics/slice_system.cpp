@@ -143,7 +143,7 @@ void SliceSystem::set(std::size_t index, const model::Leg& leg, const model::Seg
   repeat_last(index + 1);
 }
 
-void SliceSystem::set_segments(std::size_t first_pack, std::span<const double> heights,
+void SliceSystem::set_segments(std::size_t first_pack, std::span<const Pack> heights,
                                const SegmentPack& segments, std::span<Pack> radii) {
   const SegmentConstants<Pack>& constants = segments.constants;
   Pack* first = rows_.data() + first_pack * rows_per_pack_;
@@ -161,8 +161,8 @@ void SliceSystem::set_segments(std::size_t first_pack, std::span<const double> h
     if (k > 0) std::copy_n(first, rows_per_pack_, rows);
     for (int i = 0; i < pack_width; ++i) {
       const double taper = constants.upper_radius[i] - constants.lower_radius[i];
-      radii[k][i] = constants.lower_radius[i] + heights[k] * taper;
-      rows[SliceShape::gap][i] = ((heights[k] - 0.5) * taper + constants.gap[i]) / constants.inner_radius[i];
+      radii[k][i] = constants.lower_radius[i] + heights[k][i] * taper;
+      rows[SliceShape::gap][i] = ((heights[k][i] - 0.5) * taper + constants.gap[i]) / constants.inner_radius[i];
     }
     set_radius(shape_, constants.inner_radius, radii[k], {}, rows);
   }

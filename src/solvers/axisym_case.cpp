@@ -72,10 +72,8 @@ AxisymMaterials axisym_materials(const model::Scene& scene, std::size_t first, s
 
 template <int P>
 AxisymCase<P>::AxisymCase(MPI_Comm comm, const model::Scene& scene, std::size_t first, std::size_t last,
-                          int refinements)
+                          AxisymResolution resolution)
     : scene_(scene), first_(first), last_(last) {
-  AxisymResolution resolution;
-  resolution.refinements = refinements;
   SpaceChoice choice;
   choice.multipliers_on_tube = scene.axisym.multipliers == model::ContactSide::tube;
   choice.held = scene.contact_axial == model::ContactAxial::held;
@@ -138,6 +136,24 @@ std::vector<AxisymSummary> AxisymCase<P>::actuated() {
   std::vector<AxisymSummary> summaries = summarise({arrived, arrived}, iterations, !off);
   for (AxisymSummary& summary : summaries) summary.stable_voltage = off ? NAN : std::sqrt(reached);
   return summaries;
+}
+
+template <int P>
+bool AxisymCase<P>::take_model(model::Fidelity fidelity, bool actuated) {
+  const bool slides = fidelity == model::Fidelity::sliding;
+  std::vector<SlidingProfile> profiles;
+  for (std::size_t segment = first_; slides && segment <= last_; ++segment) {
+    SlidingSolution solution = solve_sliding({&scene_, segment});
+    if (!model::trustworthy(solution.result.status)) return false;
+    profiles.push_back(std::move(actuated ? solution.actuated : solution.rest));
+  }
+  const Source source = [&](std::size_t segment, std::span<const double> heights, bool of_tube) {
+    return slides ? sliding_states(scene_, segment, profiles[segment - first_], heights, of_tube)
+                  : slice_states(scene_, segment, heights, actuated);
+  };
+  system_->energise(actuated ? 1 : 0);
+  petsc::check(set_start<P>(*system_, states(source), x_.get()));
+  return true;
 }
 
 template <int P>

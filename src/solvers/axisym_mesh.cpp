@@ -95,8 +95,9 @@ AxisymMesh make_axisym_mesh(const model::Scene& scene, std::size_t first, std::s
   leg.height.push_back(0);
   leg.across =
       refined(graded(resolution.leg_columns, resolution.skin_grading, false, true), resolution.refinements);
+  const int row_refinements = resolution.refinements + resolution.row_refinements;
   const std::vector<double> tube_lines =
-      refined(graded(resolution.tube_rows, resolution.end_grading, true, true), resolution.refinements);
+      refined(graded(resolution.tube_rows, resolution.end_grading, true, true), row_refinements);
   const std::vector<double> wall_lines =
       refined(graded(resolution.tube_columns, 1, false, false), resolution.refinements);
 
@@ -122,8 +123,8 @@ AxisymMesh make_axisym_mesh(const model::Scene& scene, std::size_t first, std::s
     if (s == first) leg.outer.push_back(radius(0));
     // Not towards other segments: there the edges of the tubes press singular peaks into a leg that is free
     // to move along, and small cells would fold under them.
-    const std::vector<double> leg_lines = refined(
-        graded(resolution.leg_rows, resolution.end_grading, s == first, s == last), resolution.refinements);
+    const std::vector<double> leg_lines =
+        refined(graded(resolution.leg_rows, resolution.end_grading, s == first, s == last), row_refinements);
     for (std::size_t k = 1; k < leg_lines.size(); ++k) {
       leg.height.push_back(bottom + height * leg_lines[k]);
       leg.outer.push_back(radius(leg_lines[k]));

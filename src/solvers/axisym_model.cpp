@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "gaiter/solvers/axisym_case.hpp"
+#include "gaiter/solvers/axisym_enriched.hpp"
 
 namespace gaiter::solvers {
 
@@ -14,9 +15,11 @@ namespace {
 using model::Status;
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
+constexpr double dual_safety = 5;  // the dual finds 0.3 of the pressures' error at least (expected_changes)
 
 struct Solved {
   std::vector<AxisymSummary> rest, actuated;  // a segment each
+  std::vector<double> pressure_error;         // of the worse state, relative, if estimated
   bool converged() const { return rest[0].converged && actuated[0].converged; }
 };
 
@@ -27,11 +30,35 @@ struct Piece {
   bool actuated = true;  // whether the state under voltage is wanted
 };
 
+double change(double a, double b) {
+  return b != 0 ? std::fabs(a / b - 1) : 0;
+}
+
+// Takes the pressures' errors at the state last found into account; false where they cannot be told.
 template <int P>
-Solved solve_states(MPI_Comm comm, const Piece& piece, int refine, const AxisymObserver& observer) {
+bool add_error(const AxisymCase<P>& problem, AxisymCase<P>& finer,
+               const std::vector<AxisymSummary>& summaries, std::vector<double>& errors) {
+  const std::vector<AxisymChange> changes = expected_changes(problem, finer);
+  errors.resize(changes.size(), 0.0);
+  for (std::size_t k = 0; k < changes.size(); ++k) {
+    const double pressure = summaries[k].pressure;
+    errors[k] = std::max(errors[k], dual_safety * change(pressure + changes[k].pressure, pressure));
+  }
+  return !changes.empty();
+}
+
+// `estimate`: the errors too, from the dual on a mesh refined once more.
+template <int P>
+Solved solve_states(MPI_Comm comm, const Piece& piece, int refine, bool estimate,
+                    const AxisymObserver& observer) {
   AxisymCase<P> problem(comm, piece.scene, piece.first, piece.last, refine);
   Solved solved;
   solved.rest = problem.rest();
+  std::unique_ptr<AxisymCase<P>> finer;
+  if (estimate && solved.rest[0].converged) {
+    finer = std::make_unique<AxisymCase<P>>(comm, piece.scene, piece.first, piece.last, refine + 1);
+    estimate = add_error(problem, *finer, solved.rest, solved.pressure_error);
+  }
   if (observer && solved.rest[0].converged) problem.show(false, observer);
   const auto& modules = piece.scene.bandage.modules;
   const bool voltage = std::any_of(modules.begin() + piece.first, modules.begin() + piece.last + 1,
@@ -39,17 +66,21 @@ Solved solve_states(MPI_Comm comm, const Piece& piece, int refine, const AxisymO
   const bool actuate = voltage && piece.actuated && solved.rest[0].converged;
   solved.actuated = actuate ? problem.actuated() : solved.rest;
   if (observer && actuate && solved.actuated[0].converged) problem.show(true, observer);
+  if (estimate && finer && actuate && solved.actuated[0].converged)
+    estimate = add_error(problem, *finer, solved.actuated, solved.pressure_error);
+  if (!estimate) solved.pressure_error.clear();
   return solved;
 }
 
-Solved solve_states(MPI_Comm comm, const Piece& piece, int refine, const AxisymObserver& observer = {}) {
+Solved solve_states(MPI_Comm comm, const Piece& piece, int refine, bool estimate,
+                    const AxisymObserver& observer = {}) {
   switch (piece.scene.axisym.order) {
     case 3:
-      return solve_states<3>(comm, piece, refine, observer);
+      return solve_states<3>(comm, piece, refine, estimate, observer);
     case 4:
-      return solve_states<4>(comm, piece, refine, observer);
+      return solve_states<4>(comm, piece, refine, estimate, observer);
     default:
-      return solve_states<2>(comm, piece, refine, observer);
+      return solve_states<2>(comm, piece, refine, estimate, observer);
   }
 }
 
@@ -101,7 +132,8 @@ model::SegmentResult result_of(const model::Scene& scene, std::size_t segment, c
   result.slip_max = put(std::max(rest.slip, actuated.slip) * length);
   result.electric_field_max = put(actuated.field * scene.bandage.modules[segment].voltage / length);
   result.voltage_stable = at_rest(actuated.stable_voltage * scene.bandage.modules[segment].voltage);
-  result.error_estimate = none;
+  result.error_estimate = result.discretisation_error = none;
+  result.model_error = at_rest(0);  // nothing is beyond it
   return result;
 }
 
@@ -111,16 +143,19 @@ std::vector<model::SegmentResult> solve_piece(MPI_Comm comm, const Piece& piece,
   const double unit = axisym_stress_unit(scene.bandage),
                length = scene.leg.segments[piece.first].mean_radius();
   const int refine = scene.axisym.refine;
-  const Solved fine = solve_states(comm, piece, refine, observer);
+  // There is no mesh coarser than the coarsest, and twice its solve is still cheaper than the next one's.
+  const Solved fine = solve_states(comm, piece, refine, refine == 0, observer);
   std::vector<model::SegmentResult> results;
   for (std::size_t k = 0; k < fine.rest.size(); ++k)
     results.push_back(result_of(scene, piece.first + k, fine.rest[k], fine.actuated[k], length, unit));
+  for (std::size_t k = 0; k < fine.pressure_error.size(); ++k)
+    results[k].discretisation_error = results[k].error_estimate = fine.pressure_error[k];
   if (!fine.rest[0].converged || refine == 0) return results;
-  const Solved coarse = solve_states(comm, {scene, piece.first, piece.last, fine.converged()}, refine - 1);
+  const Solved coarse =
+      solve_states(comm, {scene, piece.first, piece.last, fine.converged()}, refine - 1, false);
   if (!coarse.rest[0].converged || (fine.converged() && !coarse.converged())) return results;
-  const auto change = [](double a, double b) { return b != 0 ? std::fabs(a / b - 1) : 0; };
   for (std::size_t k = 0; k < results.size(); ++k)
-    results[k].error_estimate =
+    results[k].discretisation_error = results[k].error_estimate =
         std::max(change(coarse.rest[k].pressure, fine.rest[k].pressure),
                  fine.converged() ? change(coarse.actuated[k].pressure, fine.actuated[k].pressure) : 0);
   return results;

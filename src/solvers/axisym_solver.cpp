@@ -70,33 +70,58 @@ PetscErrorCode AxisymSolver<P>::run(Vec x, int most, AxisymReport& report) {
   report.steps = steps_;
   report.converged = reason > 0;
   report.iterations = static_cast<int>(iterations);
-  if (report.converged) {
-    // Of the last tangent made, which is that of the solution but for the last, tiny step.
-    PetscInt negative = 0;
-    PetscCall(linear_.count_negative(&negative));
-    report.stable = negative == system_.space().negative_eigenvalues();
-  }
+  // Of the last tangent made, which is that of the solution but for the last, tiny step.
+  if (report.converged) report.stable = stable();
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 template <int P>
 void AxisymSolver<P>::try_at(Vec x) {
-  petsc::check(solve_once(x));
+  petsc::Vector direction;
+  petsc::check(VecDuplicate(x, direction.out()));
+  if (!linearise(x, residual_.get())) return;
+  solve_linear(residual_.get(), direction.get());
 }
 
 template <int P>
-PetscErrorCode AxisymSolver<P>::solve_once(Vec x) {
+bool AxisymSolver<P>::linearise(Vec x, Vec residual) {
+  bool admissible = true;
+  petsc::check(make_linear(x, residual, admissible));
+  return admissible;
+}
+
+template <int P>
+PetscErrorCode AxisymSolver<P>::make_linear(Vec x, Vec residual, bool& admissible) {
   PetscFunctionBegin;
   KSP ksp = nullptr;
-  bool admissible = true;
-  petsc::Vector direction;
-  PetscCall(VecDuplicate(x, direction.out()));
-  PetscCall(system_.evaluate(x, residual_.get(), admissible));
+  PetscCall(system_.evaluate(x, residual, admissible));
+  if (!admissible) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(assemble());
   PetscCall(SNESGetKSP(snes_.get(), &ksp));
   PetscCall(KSPSetOperators(ksp, system_.matrix(), system_.matrix()));
-  PetscCall(KSPSolve(ksp, residual_.get(), direction.get()));
+  PetscCall(KSPSetUp(ksp));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template <int P>
+void AxisymSolver<P>::solve_linear(Vec right, Vec solution) {
+  petsc::check(solve_once(right, solution));
+}
+
+template <int P>
+PetscErrorCode AxisymSolver<P>::solve_once(Vec right, Vec solution) {
+  PetscFunctionBegin;
+  KSP ksp = nullptr;
+  PetscCall(SNESGetKSP(snes_.get(), &ksp));
+  PetscCall(KSPSolve(ksp, right, solution));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template <int P>
+bool AxisymSolver<P>::stable() const {
+  PetscInt negative = 0;
+  petsc::check(linear_.count_negative(&negative));
+  return negative == system_.space().negative_eigenvalues();
 }
 
 template <int P>

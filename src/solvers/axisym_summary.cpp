@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "gaiter/petsc/check.hpp"
+#include "gaiter/petsc/session.hpp"
 #include "gaiter/physics/quadrature.hpp"
 
 namespace gaiter::solvers {
@@ -152,6 +154,118 @@ AxisymSummary summarise_axisym(const model::Scene& scene, std::size_t segment, c
   if (energised) add_actuation(scene.bandage, system, block, face, height, sum);
   return sum;
 }
+
+namespace {
+
+// Collects the derivatives of an integral along a surface.
+template <int P>
+class SurfaceGradient {
+ public:
+  using State = typename AxisymSystem<P>::SurfaceState;
+
+  SurfaceGradient(const State& state, const ContactSurface& surface) : state_(state), surface_(surface) {}
+
+  // Of the height average of the pressure between two heights.
+  PetscErrorCode pressure(const Part& part, double height, Vec gradient) const {
+    PetscFunctionBegin;
+    for (std::size_t edge = part.first_edge; edge < part.last_edge; ++edge) {
+      const double low = place_of<P>(state_.height, edge, part.bottom),
+                   high = place_of<P>(state_.height, edge, part.top);
+      if (low >= high) continue;
+      for (std::size_t g = 0; g < rule().nodes.size(); ++g) {
+        const double x = low + rule().nodes[g] * (high - low), weight = rule().weights[g] * (high - low);
+        const double slope = at<P>(state_.height, edge, x)[1];
+        PetscCall(add(edge, 0, &SurfaceNode::multiplier, weight * (1 - x) * slope / height, gradient));
+        PetscCall(add(edge, P, &SurfaceNode::multiplier, weight * x * slope / height, gradient));
+        PetscCall(add_nodes(edge, x, &SurfaceNode::u_z, 0, weight * multiplier(edge, x) / height, gradient));
+      }
+      // The place of a height that cuts the edge moves against the edge.
+      if (low > 0)
+        PetscCall(add_nodes(edge, low, &SurfaceNode::u_z, multiplier(edge, low) / height, 0, gradient));
+      if (high < 1)
+        PetscCall(add_nodes(edge, high, &SurfaceNode::u_z, -multiplier(edge, high) / height, 0, gradient));
+    }
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+
+  // Of the volume within.
+  PetscErrorCode volume(const Part& part, Vec gradient) const {
+    PetscFunctionBegin;
+    for (std::size_t edge = part.first_edge; edge < part.last_edge; ++edge)
+      for (std::size_t g = 0; g < rule().nodes.size(); ++g) {
+        const double x = rule().nodes[g], weight = M_PI * rule().weights[g];
+        const double radius = at<P>(state_.radius, edge, x)[0], slope = at<P>(state_.height, edge, x)[1];
+        PetscCall(add_nodes(edge, x, &SurfaceNode::u_r, 2 * weight * radius * slope, 0, gradient));
+        PetscCall(add_nodes(edge, x, &SurfaceNode::u_z, 0, weight * radius * radius, gradient));
+      }
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+
+ private:
+  static const physics::Quadrature& rule() {
+    static const physics::Quadrature rule = physics::gauss_legendre(P + 2);
+    return rule;
+  }
+  double multiplier(std::size_t edge, double x) const {
+    return (1 - x) * state_.multiplier[P * edge] + x * state_.multiplier[P * (edge + 1)];
+  }
+  PetscErrorCode add(std::size_t edge, int node, PetscInt SurfaceNode::*unknown, double value,
+                     Vec gradient) const {
+    PetscFunctionBegin;
+    const PetscInt place = surface_.nodes[P * edge + node].*unknown;
+    if (place >= 0) PetscCall(VecSetValue(gradient, place, value, ADD_VALUES));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  // `value` times the nodes' shapes at x, and `slope` times their slopes.
+  PetscErrorCode add_nodes(std::size_t edge, double x, PetscInt SurfaceNode::*unknown, double value,
+                           double slope, Vec gradient) const {
+    PetscFunctionBegin;
+    for (int i = 0; i <= P; ++i) {
+      std::vector<double> shape(P + 1, 0.0);
+      shape[i] = 1;
+      const Pair there = at<P>(shape, 0, x);
+      PetscCall(add(edge, i, unknown, value * there[0] + slope * there[1], gradient));
+    }
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+
+  const State& state_;
+  const ContactSurface& surface_;
+};
+
+}  // namespace
+
+template <int P>
+PetscErrorCode differentiate_output(const AxisymSystem<P>& system, int block, AxisymOutput output,
+                                    Vec gradient) {
+  PetscFunctionBegin;
+  const AxisymSpace<P>& space = system.space();
+  const AxisymBlock &tube = space.mesh.blocks[block], &leg = space.mesh.leg();
+  PetscCall(VecSet(gradient, 0));
+  if (petsc::rank(system.comm()) == 0) {
+    const bool on_tube = space.choice.multipliers_on_tube;
+    const auto& carrier = on_tube ? system.tubes()[block] : system.leg();
+    const double bottom = tube.height.front(), top = tube.height.back();
+    const auto [first, last] = std::ranges::equal_range(leg.segment, tube.segment.front());
+    if (output == AxisymOutput::pressure)
+      PetscCall((SurfaceGradient<P>(carrier, on_tube ? space.tubes[block] : space.leg)
+                     .pressure({0, carrier.radius.size() / P, bottom, top}, top - bottom, gradient)));
+    else
+      PetscCall((SurfaceGradient<P>(system.leg(), space.leg)
+                     .volume({static_cast<std::size_t>(first - leg.segment.begin()),
+                              static_cast<std::size_t>(last - leg.segment.begin())},
+                             gradient)));
+  }
+  PetscCall(VecAssemblyBegin(gradient));
+  PetscCall(VecAssemblyEnd(gradient));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+#define GAITER_OUTPUT(P) \
+  template PetscErrorCode differentiate_output(const AxisymSystem<P>&, int, AxisymOutput, Vec);
+GAITER_OUTPUT(2)
+GAITER_OUTPUT(3)
+GAITER_OUTPUT(4)
 
 template AxisymSummary summarise_axisym<2>(const model::Scene&, std::size_t, const AxisymSystem<2>&, int,
                                            bool);

@@ -2,6 +2,7 @@
 // Relative errors of the height averages of a batch of slices.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "gaiter/physics/height_error.hpp"
 #include "gaiter/physics/slice_kernel.hpp"
@@ -15,29 +16,81 @@ using physics::SliceOutcomes;
 
 namespace {
 
-constexpr double caution = 10;            // of an error estimated from starting values instead of solutions
+constexpr double caution = 10;  // of an error estimated from starting values instead of solutions
+constexpr double largest_own_error =
+    1e-4;                          // that the slices' own pressures tell; beyond, there may be a kink
+constexpr int fewest_to_tell = 6;  // slices, from which on these are trusted without a plan
 constexpr double smallest_error = 4e-15;  // of a sum of some slices, by rounding
 constexpr int most_check_points = 128;    // over the height, of the rule that an error estimate compares with
 
 }  // namespace
 
-// From the pressures of a block alone, where these leave no doubt.
+// From the pressures of a block alone, where these leave no doubt: of the pieces of the height, each by itself.
 void SliceModel::height_errors(const Block& block) {
-  const model::SliceRule rule = tasks_[block.tasks[0]].scene->discretisation.slice_rule;
-  const auto slices = std::span(outcomes_).subspan(block.first_pack, block.rule->nodes.size());
-  if (slices.size() < physics::fewest_for_height_error || rule != model::SliceRule::gauss) {
-    unclear_.insert(unclear_.end(), block.tasks.begin(), block.tasks.end());
+  const std::size_t count = block.rule->nodes.size();
+  const auto tell = [&](auto&& error_of) {
+    for (std::size_t i = 0; i < block.tasks.size(); ++i)
+      height_error_[block.tasks[i]] = error_of(static_cast<int>(i), tasks_[block.tasks[i]].plan);
+  };
+  const SegmentTask& first = tasks_[block.tasks[0]];
+  const bool planned = first.plan != nullptr;
+  const bool gauss = planned || first.scene->discretisation.slice_rule == model::SliceRule::gauss;
+  const int fewest = planned ? physics::fewest_for_height_error : fewest_to_tell;
+  if (static_cast<int>(count) < fewest || !gauss) {
+    if (planned)
+      tell([](int, const SlicePlan* plan) { return plan->height_error; });
+    else
+      unclear_.insert(unclear_.end(), block.tasks.begin(), block.tasks.end());
     return;
   }
-  Pack rest, actuated{};
-  physics::height_error(*block.rule, slices, &SliceOutcomes::pressure_rest, rest);
-  if (energised_) physics::height_error(*block.rule, slices, &SliceOutcomes::pressure_actuated, actuated);
-  for (std::size_t i = 0; i < block.tasks.size(); ++i) {
-    const int place = static_cast<int>(i);
-    const double error = std::max({smallest_error, rest[place], actuated[place]});
-    height_error_[block.tasks[i]] = error;
-    if (!(error < physics::largest_height_error)) unclear_.push_back(block.tasks[i]);
+  Pack worst{};
+  for (const bool actuated : {false, true}) {
+    if (actuated && !energised_) break;
+    Pack sum{}, whole{};
+    for (int piece = 0; piece < block.pieces; ++piece) {
+      const std::size_t from = static_cast<std::size_t>(piece) * count;
+      Pack roughness, error, mean, share{};
+      for (std::size_t k = 0; k < count; ++k)
+        for (int i = 0; i < pack_width; ++i) share[i] += block.weights[from + k][i];
+      const physics::SegmentConstants<Pack>& leg = block.segments.constants;
+      for (int i = 0; i < pack_width; ++i) {
+        const double ends = leg.upper_radius[i] + leg.lower_radius[i];
+        roughness[i] = std::fabs((leg.upper_radius[i] - leg.lower_radius[i]) / ends) * share[i];
+        const std::size_t task = block.tasks[std::min<std::size_t>(i, block.tasks.size() - 1)];
+        if (planned) roughness[i] = std::max(roughness[i], tasks_[task].plan->roughness);
+      }
+      physics::height_error(
+          *block.rule, std::span(outcomes_).subspan(block.first_pack + from, count),
+          actuated ? &SliceOutcomes::pressure_actuated : &SliceOutcomes::pressure_rest, roughness, error, mean);
+      for (int i = 0; i < pack_width; ++i) {
+        sum[i] += share[i] * error[i];
+        whole[i] += share[i] * mean[i];
+      }
+    }
+    for (int i = 0; i < pack_width; ++i)
+      worst[i] = std::max(worst[i], whole[i] > 0 ? sum[i] / whole[i] : 0.0);
   }
+  tell([&](int place, const SlicePlan* plan) {
+    return std::max({smallest_error, worst[place], plan ? plan->height_error : 0.0});
+  });
+  for (std::size_t i = 0; !planned && i < block.tasks.size(); ++i)
+    if (!(worst[static_cast<int>(i)] < largest_own_error)) unclear_.push_back(block.tasks[i]);
+}
+
+// What models beyond this one would change, as far as it is known.
+double SliceModel::model_error(std::size_t task, model::Fidelity fidelity) const {
+  if (tasks_[task].plan) return tasks_[task].plan->change_beyond;
+  const model::Scene& scene = *tasks_[task].scene;
+  const physics::SegmentForecast& forecast = forecasts_[task];
+  const double sliding = forecast.sliding_error();
+  const bool gives_way = scene.leg.model != model::LegModel::rigid;
+  if (fidelity == model::Fidelity::slice || !gives_way) return sliding;
+  // A leg without compliance has none to correct for.
+  const bool known = scene.leg.material != model::LegMaterial::compliance ||
+                     scene.leg.segments[tasks_[task].segment].compliance.b > 0;
+  if (!known) return std::numeric_limits<double>::quiet_NaN();
+  return sliding +
+         (fidelity == model::Fidelity::rigid ? forecast.compliance_error() : forecast.first_order_error());
 }
 
 // Of the tasks left, from the average of the starting values, which are close to the pressures.
@@ -61,7 +114,10 @@ void SliceModel::errors_of_start(std::span<const std::size_t> tasks, bool rigid)
   physics::SegmentPack segments;
   set_segments(tasks, segments);
   check_.reset(system_.shape(), heights.size() * pack_width);
-  check_.set_segments(0, heights, segments, radii);
+  std::vector<Pack> places(heights.size());
+  for (std::size_t k = 0; k < heights.size(); ++k)
+    for (int i = 0; i < pack_width; ++i) places[k][i] = heights[k];
+  check_.set_segments(0, places, segments, radii);
   Pack error;
   for (int i = 0; i < pack_width; ++i) error[i] = smallest_error;
   for (bool on : {false, true}) {

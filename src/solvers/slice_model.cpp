@@ -36,6 +36,21 @@ const physics::Quadrature& SliceModel::wall_rule(int points) {
   return found->second;
 }
 
+// What is known of the errors of tasks that are not planned.
+void SliceModel::forecast() {
+  using physics::SegmentForecast;
+  forecasts_.clear();
+  auto depth = SegmentForecast::Depth::sliding;
+  for (const SegmentTask& task : tasks_) {
+    if (task.plan) return;
+    const model::Scene& scene = *task.scene;
+    forecasts_.emplace_back(scene, task.segment);
+    if (scene.fidelity != model::Fidelity::slice || scene.discretisation.wall_points > 0)
+      depth = SegmentForecast::Depth::all;
+  }
+  SegmentForecast::analyse(forecasts_, depth);
+}
+
 // The tasks' slices, set up in the memory of the batch before.
 void SliceModel::take(std::span<const SegmentTask> tasks) {
   tasks_ = tasks;
@@ -45,6 +60,10 @@ void SliceModel::take(std::span<const SegmentTask> tasks) {
   for (const SegmentTask& task : tasks) {
     const model::Scene& scene = *task.scene;
     numbers_.push_back(physics::segment_numbers(scene, task.segment));
+    if (task.plan) {
+      numbers_.back().wall_points = task.plan->wall_points;
+      if (!task.plan->actuated) numbers_.back().voltage = 0;
+    }
     const bool voltage = numbers_.back().voltage != 0;
     shape.layers = std::max(shape.layers, voltage ? scene.bandage.layers : 0);
     shape.ogden_terms = static_cast<int>(scene.bandage.ogden.size());
@@ -54,7 +73,13 @@ void SliceModel::take(std::span<const SegmentTask> tasks) {
   }
   energised_ = !petsc::agree(comm_, !voltage_somewhere);
   newton_ = petsc::agree(comm_, all_newton);
-  physics::choose_wall_points(numbers_, wall_tolerance);
+  forecast();
+  if (forecasts_.size() == tasks.size()) physics::choose_wall_points(numbers_, wall_tolerance);
+  for (std::size_t t = 0; t < tasks.size(); ++t)
+    if (tasks[t].plan)
+      numbers_[t].wall_error = tasks[t].plan->wall_error;
+    else if (const int points = tasks[t].scene->discretisation.wall_points; points > 0)
+      numbers_[t].wall_error = forecasts_[t].wall_error(points);
   arrange();
   double most_points = 1;
   for (const auto& numbers : numbers_) most_points = std::max(most_points, numbers.wall_points);
@@ -68,7 +93,7 @@ void SliceModel::take(std::span<const SegmentTask> tasks) {
   outcomes_.assign(packs, {});
   for (Block& block : blocks_) {
     set_segments(block.tasks, block.segments);
-    system_.set_segments(block.first_pack, block.rule->nodes, block.segments,
+    system_.set_segments(block.first_pack, block.heights, block.segments,
                          std::span(radii_).subspan(block.first_pack));
     for (std::size_t k = block.first_pack; k < block.end_pack(); ++k) {
       outcomes_[k].leg_radius = radii_[k];
@@ -80,26 +105,57 @@ void SliceModel::take(std::span<const SegmentTask> tasks) {
 // Tasks in blocks: those with equally many slices, thin walls before the thicker ones, so that most packs
 // have no more wall points than their slices need.
 void SliceModel::arrange() {
-  std::map<std::pair<int, int>, std::vector<std::size_t>> alike;  // slices and wall points: tasks
-  for (std::size_t t = 0; t < tasks_.size(); ++t)
-    alike[{tasks_[t].scene->discretisation.slice_count, static_cast<int>(numbers_[t].wall_points)}].push_back(
-        t);
+  struct Counts {
+    int slices, pieces, wall_points;
+    auto operator<=>(const Counts&) const = default;
+  };
+  std::map<Counts, std::vector<std::size_t>> alike;
+  for (std::size_t t = 0; t < tasks_.size(); ++t) {
+    const SlicePlan* plan = tasks_[t].plan;
+    const int slices = plan ? plan->slice_count : tasks_[t].scene->discretisation.slice_count;
+    const int pieces = plan ? static_cast<int>(plan->cuts.size()) + 1 : 1;
+    alike[{slices, pieces, static_cast<int>(numbers_[t].wall_points)}].push_back(t);
+  }
   std::size_t blocks = 0, packs = 0;
-  int slices = 0;
+  Counts before{};
   for (const auto& [counts, tasks] : alike)
     for (const std::size_t task : tasks) {
-      if (blocks == 0 || counts.first != slices || blocks_[blocks - 1].tasks.size() == pack_width) {
+      const bool same = counts.slices == before.slices && counts.pieces == before.pieces;
+      if (blocks == 0 || !same || blocks_[blocks - 1].tasks.size() == pack_width) {
         if (++blocks > blocks_.size()) blocks_.emplace_back();
         Block& block = blocks_[blocks - 1];
-        slices = counts.first;
+        before = counts;
+        const model::SliceRule rule = tasks_[task].plan ? model::SliceRule::gauss
+                                                        : tasks_[task].scene->discretisation.slice_rule;
         block.first_pack = packs;
-        block.rule = &height_rule(tasks_[task].scene->discretisation.slice_rule, slices);
+        block.rule = &height_rule(rule, counts.slices);
+        block.pieces = counts.pieces;
+        block.heights.resize(block.rule->nodes.size() * static_cast<std::size_t>(counts.pieces));
         block.tasks.clear();
         packs = block.end_pack();
       }
       blocks_[blocks - 1].tasks.push_back(task);
     }
   blocks_.resize(blocks);
+  for (Block& block : blocks_) lay_slices(block);
+}
+
+// The rule's points on each piece of the height between the plan's cuts.
+void SliceModel::lay_slices(Block& block) {
+  const std::size_t count = block.rule->nodes.size();
+  block.weights.resize(block.heights.size());
+  for (int i = 0; i < pack_width; ++i) {
+    const std::size_t task = block.tasks[std::min<std::size_t>(i, block.tasks.size() - 1)];
+    for (int piece = 0; piece < block.pieces; ++piece) {
+      const double from = piece == 0 ? 0 : tasks_[task].plan->cuts[piece - 1];
+      const double to = piece + 1 == block.pieces ? 1 : tasks_[task].plan->cuts[piece];
+      for (std::size_t k = 0; k < count; ++k) {
+        const std::size_t slice = static_cast<std::size_t>(piece) * count + k;
+        block.heights[slice][i] = from + (to - from) * block.rule->nodes[k];
+        block.weights[slice][i] = (to - from) * block.rule->weights[k];
+      }
+    }
+  }
 }
 
 // Up to 64 tasks to a pack of segments.
@@ -144,13 +200,40 @@ void SliceModel::solve_rigid() {
   each_pack([&](const Block&, std::size_t k) { physics::adopt_rigid(outcomes_[k]); });
 }
 
+// What the slices start from, taken for the answer: no equation is solved.
+void SliceModel::solve_first_order() {
+  for (const bool at_rest : {true, false}) {
+    if (!at_rest && !energised_) break;
+    system_.energise(!at_rest);
+    each_pack([&](const Block& block, std::size_t k) {
+      Pack pressure;
+      physics::start_at_rest(system_.shape(), system_.pack(k), states_[k], pressure);
+      for (int i = 0; i < pack_width; ++i) states_[k].open[i] = 0;
+      const Pack& limit = block.segments.constants.data_limit;
+      if (at_rest) {
+        rigid_pressure_[k] = pressure;
+        physics::record_rest(system_.pack(k), states_[k], limit, outcomes_[k]);
+      } else {
+        physics::record_actuated(system_.pack(k), states_[k], limit, outcomes_[k]);
+      }
+    });
+    if (at_rest) rigid_pressures();
+  }
+}
+
 std::span<const model::SegmentResult> SliceModel::solve(std::span<const SegmentTask> tasks) {
   take(tasks);
   const model::Scene* scene = tasks.empty() ? nullptr : tasks[0].scene;
-  const bool rigid = petsc::largest(comm_, scene && (scene->fidelity == model::Fidelity::rigid ||
+  const model::Fidelity asked = !scene          ? model::Fidelity::slice
+                                : tasks[0].plan ? tasks[0].plan->fidelity
+                                                : scene->fidelity;
+  const bool rigid = petsc::largest(comm_, scene && (asked == model::Fidelity::rigid ||
                                                      scene->leg.model == model::LegModel::rigid)) > 0;
+  const bool first_order = !rigid && petsc::largest(comm_, asked == model::Fidelity::first_order) > 0;
   if (rigid) {
     solve_rigid();
+  } else if (first_order) {
+    solve_first_order();
   } else {
     prepare_solver(newton_ ? model::SliceSolver::newton : model::SliceSolver::fixed_point,
                    petsc::largest(comm_, scene ? scene->discretisation.fixed_point_tolerance : 0));
@@ -160,28 +243,35 @@ std::span<const model::SegmentResult> SliceModel::solve(std::span<const SegmentT
   }
   system_.energise(true);
   if (energised_) finish_actuated();
-  summarise(rigid);
+  summarise(rigid         ? model::Fidelity::rigid
+            : first_order ? model::Fidelity::first_order
+                          : model::Fidelity::slice);
   return results_;
 }
 
-void SliceModel::summarise(bool rigid) {
+void SliceModel::summarise(model::Fidelity fidelity) {
   unclear_.clear();
   height_error_.resize(tasks_.size());
   for (const Block& block : blocks_) height_errors(block);
-  errors_of_start(rigid);
+  errors_of_start(fidelity == model::Fidelity::rigid);
   results_.resize(tasks_.size());
   for (const Block& block : blocks_) {
-    const auto slices = std::span(outcomes_).subspan(block.first_pack, block.rule->nodes.size());
-    const physics::SegmentSummary summary(slices, *block.rule, block.segments);
+    const auto slices = std::span(outcomes_).subspan(block.first_pack, block.heights.size());
+    const physics::SegmentSummary summary(slices, block.weights, block.segments);
     for (std::size_t i = 0; i < block.tasks.size(); ++i) {
       const std::size_t task = block.tasks[i];
       const physics::SegmentNumbers& numbers = numbers_[task];
       model::SegmentResult& result = results_[task];
       result = summary.result(static_cast<int>(i), height_error_[task] + numbers.wall_error);
-      result.fidelity = rigid ? model::Fidelity::rigid : model::Fidelity::slice;
+      result.fidelity = fidelity;
+      result.slice_count = static_cast<int>(block.heights.size());
+      result.wall_points = static_cast<int>(numbers.wall_points);
       // A slice's state is that of the branch from rest; where this one ends is not looked for.
       result.voltage_stable =
           result.status < Status::pulled_in ? numbers.voltage : std::numeric_limits<double>::quiet_NaN();
+      if (!model::trustworthy(result.status)) continue;
+      result.model_error = model_error(task, fidelity);
+      model::derive_error(result);
     }
   }
 }

@@ -20,7 +20,7 @@
 // (ContactAxial::held) the first is gone. p_x and p_y are derivatives of ln P of the slices with respect to
 // the logarithms of radius and axial stretch. The volume follows likewise. What is of higher order, and the
 // shear of the leg, which none of this has, is bounded by factors that benchmarks/model_map.py fits to finite
-// elements. Tests: tests/model_error.cpp.
+// elements. Tests: tests/model_shifts.cpp.
 namespace gaiter::physics {
 
 // Relative changes of one output that the effects make, signed.

@@ -24,6 +24,9 @@ Quadrature slice_quadrature(model::SliceRule rule, int slices);
 // wall.
 double gauss_error_of_exponential(int points, double rate);
 
+// (n!)^4 / ((2n+1) ((2n)!)^3): times the derivative of order 2n somewhere in (0, 1), the rule's error.
+double gauss_error_constant(int points);
+
 // Its part that the rate has no part in: ln((n!)^4 / ((2n + 1) ((2n)!)^3)) with n = `points`.
 double gauss_log_constant(int points);
 

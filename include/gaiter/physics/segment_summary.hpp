@@ -4,7 +4,6 @@
 #include <span>
 
 #include "gaiter/model/result.hpp"
-#include "gaiter/physics/quadrature.hpp"
 #include "gaiter/physics/segment_pack.hpp"
 #include "gaiter/physics/slice_outcome.hpp"
 
@@ -13,15 +12,16 @@ namespace gaiter::physics {
 // Height averages and the like of the segments of a pack, to results.
 class SegmentSummary {
  public:
-  // From the segments' slices at the nodes of `rule` over the height, a pack a node.
-  SegmentSummary(std::span<const SliceOutcomes> slices, const Quadrature& rule, const SegmentPack& segments);
+  // From the segments' slices over the height, a pack of each segment's next one, and their weights.
+  SegmentSummary(std::span<const SliceOutcomes> slices, std::span<const Pack> weights,
+                 const SegmentPack& segments);
 
   // Of one segment. All numbers but the initial volume and the rigid pressures are NaN where a slice has no
-  // trustworthy result, the field also where one is pulled in. `quadrature_error` becomes the error estimate.
+  // trustworthy result, the field also where one is pulled in. `quadrature_error` becomes the discretisation error.
   model::SegmentResult result(int place, double quadrature_error) const;
 
  private:
-  void add(const SliceOutcomes& slice, double weight);
+  void add(const SliceOutcomes& slice, const Pack& weights);
   void finish(const SegmentPack& segments);
 
   Pack status_{}, iterations_{}, field_{};

@@ -76,8 +76,8 @@ class SliceSystem {
            const Quadrature* wall_rule = nullptr);
 
   // Constants of the slices of up to 64 segments: the packs `first_pack`, `first_pack` + 1, ... take those at
-  // one of the heights from 0 to 1 each, a segment a place. `radii` take the leg's radius.
-  void set_segments(std::size_t first_pack, std::span<const double> heights, const SegmentPack& segments,
+  // a height from 0 to 1 of each, a segment a place. `radii` take the leg's radius.
+  void set_segments(std::size_t first_pack, std::span<const Pack> heights, const SegmentPack& segments,
                     std::span<Pack> radii);
 
   // With the voltage on, or off as if there were none (the rest state).

@@ -26,7 +26,10 @@ template <int P>
 class AxisymCase {
  public:
   // Segments first to last, both included. @note Collective.
-  AxisymCase(MPI_Comm comm, const model::Scene& scene, std::size_t first, std::size_t last, int refinements);
+  AxisymCase(MPI_Comm comm, const model::Scene& scene, std::size_t first, std::size_t last, int refinements)
+      : AxisymCase(comm, scene, first, last, AxisymResolution{.refinements = refinements}) {}
+  AxisymCase(MPI_Comm comm, const model::Scene& scene, std::size_t first, std::size_t last,
+             AxisymResolution resolution);
   AxisymCase(const AxisymCase&) = delete;
   AxisymCase& operator=(const AxisymCase&) = delete;
 
@@ -44,7 +47,15 @@ class AxisymCase {
   // Hands the fields of the state last found over, on rank 0. @note Collective.
   void show(bool actuated, const AxisymObserver& observer) const;
 
+  // Puts what the slices or the sliding slices say of a state into state(), as it is: with ends that bending
+  // does not take off the leg. False where these have no answer. Not for a field solved on the mesh.
+  // @note Collective.
+  bool take_model(model::Fidelity fidelity, bool actuated);
+
   const AxisymSystem<P>& system() const { return *system_; }
+  AxisymSystem<P>& system() { return *system_; }
+  AxisymSolver<P>& solver() { return *solver_; }
+  Vec state() const { return x_.get(); }  // last found
 
  private:
   // What a simpler model says of a segment at relative heights of the tube's or the leg's surface.

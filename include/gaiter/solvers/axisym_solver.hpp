@@ -36,6 +36,15 @@ class AxisymSolver {
   // @note Collective.
   void try_at(Vec x);
 
+  // The residual at x, and the tangent there factorised for solve_linear: false, on all ranks alike, where x
+  // is inadmissible. @note Collective.
+  bool linearise(Vec x, Vec residual);
+  // One solution with the tangent linearised. @note Collective.
+  void solve_linear(Vec right, Vec solution);
+  // Of the tangent factorised last: as many negative eigenvalues as pressures and multipliers. @note
+  // Collective.
+  bool stable() const;
+
  private:
   static PetscErrorCode form_function(SNES snes, Vec x, Vec f, void* context);
   static PetscErrorCode form_jacobian(SNES snes, Vec x, Mat jacobian, Mat preconditioner, void* context);
@@ -45,7 +54,8 @@ class AxisymSolver {
   PetscErrorCode create();
   PetscErrorCode run(Vec x, int most, AxisymReport& report);
   PetscErrorCode assemble();
-  PetscErrorCode solve_once(Vec x);
+  PetscErrorCode make_linear(Vec x, Vec residual, bool& admissible);
+  PetscErrorCode solve_once(Vec right, Vec solution);
 
   AxisymSystem<P>& system_;
   petsc::Vector residual_;

@@ -31,4 +31,13 @@ template <int P>
 AxisymSummary summarise_axisym(const model::Scene& scene, std::size_t segment, const AxisymSystem<P>& system,
                                int block, bool energised);
 
+// The outputs whose errors are estimated: the height average of the pressure, and the volume of the leg.
+enum class AxisymOutput { pressure, volume };
+
+// Derivative of the summary's value by all unknowns, at the state that the system was last evaluated at.
+// @note Collective.
+template <int P>
+PetscErrorCode differentiate_output(const AxisymSystem<P>& system, int block, AxisymOutput output,
+                                    Vec gradient);
+
 }  // namespace gaiter::solvers

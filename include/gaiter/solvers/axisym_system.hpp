@@ -42,6 +42,7 @@ class AxisymSystem {
   // The share of the electric field's energy that acts: 0 no voltage, 1 the full one; linear in the voltage's
   // square. The field is that of the space's potential if it has one, else the closed form across the wall.
   void energise(double share) { energised_ = share; }
+  double energised() const { return energised_; }
   typename physics::AxisymElement<P>::WallField field(const AxisymBlock& tube) const {
     return {energised_, tube.inner[0], tube.outer[0]};
   }

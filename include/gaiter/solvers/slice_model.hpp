@@ -10,18 +10,38 @@
 #include <vector>
 
 #include "gaiter/model/result.hpp"
+#include "gaiter/physics/segment_forecast.hpp"
 #include "gaiter/physics/segment_summary.hpp"
 #include "gaiter/solvers/slice_solver.hpp"
 
 namespace gaiter::solvers {
 
+// How the slices of one segment are laid, where its scene does not say: see auto_model.hpp.
+struct SlicePlan {
+  model::Fidelity fidelity = model::Fidelity::slice;
+  int slice_count = 6;  // Gauss points, in each piece between cuts
+  int wall_points = 3;
+  std::vector<double> cuts;  // heights in (0, 1), ascending, where the bandage leaves the leg
+  double height_error = 0;   // predicted, relative
+  double roughness = 0;  // 0 to 1: how little the leg's law lets the pressure's Legendre coefficients fall
+  double wall_error = 0;
+  double model_error = 0;    // against the finest model that the goal allows
+  double change_beyond = 0;  // by the models beyond this one, allowed or not; NaN: not known
+  double tolerance = 0;      // of the discretisation
+  double factor = 1;         // errors of the wanted outputs over those of the pressures
+  double cost = 0;           // predicted [s]
+  bool actuated = true;  // false: the state under voltage is not wanted
+};
+
 // One segment of one design.
 struct SegmentTask {
   const model::Scene* scene = nullptr;
   std::size_t segment = 0;
+  const SlicePlan* plan = nullptr;  // null: as the scene says
 };
 
-// The slice model, or with Fidelity::rigid the rigid leg: rest and actuated states of many segments, each as
+// The slice model, or with Fidelity::rigid the rigid leg, or with Fidelity::first_order the rigid leg's
+// pressures corrected to first order for its giving way: rest and actuated states of many segments, each as
 // one SNES over all slices. Takes batch after batch; the SNES and all memory are made once and used again.
 class SliceModel {
  public:
@@ -31,33 +51,39 @@ class SliceModel {
 
   // All tasks of all ranks: every rank gives its own, none too, and gets their results in the same order,
   // good until the next call. They do not depend on how tasks are spread over ranks or batches. All scenes of
-  // a call have the same fidelity, leg material, slice rule, solver and number of Ogden terms; anything else
-  // may differ. @note Collective.
+  // a call have the same fidelity (the plan's, where there is one), leg material, slice rule, solver and
+  // number of Ogden terms; anything else may differ. @note Collective.
   std::span<const model::SegmentResult> solve(std::span<const SegmentTask> tasks);
 
  private:
-  // Up to 64 segments with equally many slices. Of the slices, all those at one height are a pack.
+  // Up to 64 segments with equally many slices. The first slices of all are a pack, and so on.
   struct Block {
     std::size_t first_pack = 0;
-    const physics::Quadrature* rule = nullptr;  // over the height
-    std::vector<std::size_t> tasks;             // one a place
+    const physics::Quadrature* rule = nullptr;  // over the height, or over each piece of it
+    int pieces = 1;
+    std::vector<physics::Pack> heights, weights;  // of the slices
+    std::vector<std::size_t> tasks;               // one a place
     physics::SegmentPack segments;
 
-    std::size_t end_pack() const { return first_pack + rule->nodes.size(); }
+    std::size_t end_pack() const { return first_pack + heights.size(); }
   };
 
+  void forecast();
   void take(std::span<const SegmentTask> tasks);
   void arrange();
+  void lay_slices(Block& block);
   void set_segments(std::span<const std::size_t> tasks, physics::SegmentPack& segments);
   void prepare_solver(model::SliceSolver algorithm, double tolerance);
   void rigid_pressures();
   void solve_rigid();
+  void solve_first_order();
   void rest();
   void actuate();
   void solve_doubtful(bool at_rest);
   void float_free(const Block& block, std::size_t pack);
   void finish_actuated();
-  void summarise(bool rigid);
+  void summarise(model::Fidelity fidelity);
+  double model_error(std::size_t task, model::Fidelity fidelity) const;
   void height_errors(const Block& block);
   void errors_of_start(bool rigid);
   void errors_of_start(std::span<const std::size_t> tasks, bool rigid);
@@ -78,7 +104,8 @@ class SliceModel {
 
   // Of the batch at hand.
   std::span<const SegmentTask> tasks_;
-  std::vector<physics::SegmentNumbers> numbers_;  // of each task
+  std::vector<physics::SegmentNumbers> numbers_;     // of each task
+  std::vector<physics::SegmentForecast> forecasts_;  // likewise, unless they have plans
   std::vector<Block> blocks_;
   bool energised_ = false;  // somewhere, on any rank
   bool newton_ = true;      // all ranks agree, those without tasks too

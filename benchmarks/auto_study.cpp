@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: BSD-2-Clause
+// Does -fidelity auto keep what it promises, and at what cost? Over Sobol scenes (sobol_scenes.hpp) and for
+// tolerances 1e-1 to 1e-6, up to the slice model, whose full resolution is the truth: share of scenes whose
+// true error (the larger one of the pressures at rest and under voltage) is below the tolerance; cost,
+// planning and repeated solves included, over that of the cheapest rung that would have done, found by
+// hindsight among rigid, first order and slices with 1 to 64 points over the height and 1 to 12 through the
+// wall; measured seconds of both; and how the true error compares with the estimated one. Costs are those of
+// plan_cost, whose fit to measured times is printed first. Usage: auto_study [-scenes 2000]
+#include <petscsys.h>
+#include <time.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <map>
+
+#include "gaiter/petsc/check.hpp"
+#include "gaiter/petsc/session.hpp"
+#include "gaiter/physics/segment_forecast.hpp"
+#include "gaiter/solvers/auto_model.hpp"
+#include "sobol_scenes.hpp"
+
+namespace {
+
+using namespace gaiter;
+using model::Fidelity;
+using solvers::SegmentTask;
+using solvers::SlicePlan;
+
+// Of this process: others may run beside it.
+double processor_seconds() {
+  timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+double error_of(const model::SegmentResult& found, const model::SegmentResult& truth) {
+  const auto relative = [](double a, double b) { return b > 0 ? std::fabs(a / b - 1) : std::fabs(a); };
+  return std::max(relative(found.pressure_rest, truth.pressure_rest),
+                  relative(found.pressure_actuated, truth.pressure_actuated));
+}
+
+double quantile(std::vector<double> values, double part) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  return values[std::min(values.size() - 1,
+                         static_cast<std::size_t>(part * static_cast<double>(values.size())))];
+}
+
+std::vector<model::SegmentResult> solve(const std::vector<model::Scene>& scenes,
+                                        const std::vector<SlicePlan>& plans, double* seconds = nullptr) {
+  static solvers::SliceModel model(PETSC_COMM_SELF);
+  std::vector<model::SegmentResult> results(scenes.size());
+  const double start = processor_seconds();
+  std::map<std::pair<Fidelity, int>, std::vector<std::size_t>> groups;
+  for (std::size_t i = 0; i < scenes.size(); ++i)
+    groups[{plans[i].fidelity, plans[i].wall_points}].push_back(i);
+  for (const auto& [key, chosen] : groups) {
+    std::vector<SegmentTask> tasks;
+    for (const std::size_t i : chosen) tasks.push_back({&scenes[i], 0, &plans[i]});
+    const auto found = model.solve(tasks);
+    for (std::size_t k = 0; k < chosen.size(); ++k) results[chosen[k]] = found[k];
+  }
+  if (seconds) *seconds = processor_seconds() - start;
+  return results;
+}
+
+void tell(const model::Scene& scene, const SlicePlan& plan, const SlicePlan& best,
+          const model::SegmentResult& found, double error, double estimate, double ratio) {
+  const model::Segment& leg = scene.leg.segments[0];
+  physics::SegmentForecast forecast(scene, 0);
+  forecast.analyse();
+  std::printf(
+      "  stretch %.3f wall %.3g mm mu %.2g taper %.3f: plan %d %dx%d cuts %zu (h %.1e w %.1e m %.1e), found "
+      "%dx%d, best %d %dx%d, error %.1e, told %.1e, gain %.2f, cost ratio %.2f\n",
+      scene.bandage.modules[0].stretch, 1e3 * scene.bandage.thickness, scene.bandage.ogden[0].mu,
+      0.5 * (leg.upper_radius - leg.lower_radius) / leg.mean_radius(), static_cast<int>(plan.fidelity),
+      plan.slice_count, plan.wall_points, plan.cuts.size(), plan.height_error, plan.wall_error,
+      plan.model_error, found.slice_count, found.wall_points, static_cast<int>(best.fidelity),
+      best.slice_count, best.wall_points, error, estimate, forecast.gain(), ratio);
+}
+
+struct Rung {
+  SlicePlan plan;
+  std::vector<double> error, cost;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  petsc::Session session(std::vector<std::string>(argv + 1, argv + argc));
+  PetscInt count = 2000, skip = 0, repeats = 3;
+  petsc::check(PetscOptionsGetInt(nullptr, nullptr, "-scenes", &count, nullptr));
+  petsc::check(PetscOptionsGetInt(nullptr, nullptr, "-skip", &skip, nullptr));
+  petsc::check(PetscOptionsGetInt(nullptr, nullptr, "-repeats", &repeats, nullptr));
+  PetscReal only = 0;
+  petsc::check(PetscOptionsGetReal(nullptr, nullptr, "-tell", &only, nullptr));
+  const std::vector<model::Scene> scenes = sobol::scenes(static_cast<int>(count), static_cast<int>(skip));
+  const std::size_t size = scenes.size();
+
+  std::vector<SlicePlan> exact(size);
+  for (std::size_t i = 0; i < size; ++i) {
+    physics::SegmentForecast forecast(scenes[i], 0);
+    forecast.analyse();
+    exact[i] = {Fidelity::slice, 64, 24, forecast.cuts()};
+  }
+  const auto truth = solve(scenes, exact);
+  std::vector<bool> counts(size);
+  std::map<int, int> statuses;
+  for (std::size_t i = 0; i < size; ++i) {
+    counts[i] = model::trustworthy(truth[i].status) && truth[i].pressure_rest > 0;
+    ++statuses[static_cast<int>(truth[i].status)];
+  }
+  std::printf("%zu scenes; statuses of the truth:", size);
+  for (const auto& [status, number] : statuses) std::printf(" %d: %d", status, number);
+  std::printf("\n\nmeasured over predicted time of a rung\n");
+
+  std::vector<Rung> rungs;
+  for (Fidelity fidelity : {Fidelity::rigid, Fidelity::first_order, Fidelity::slice})
+    for (int n : {1, 2, 3, 4, 5, 6, 8, 12, 16, 24, 32, 64})
+      for (int q : {1, 2, 3, 4, 6, 8, 12}) {
+        Rung rung{{fidelity, n, q, {}}, {}, {}};
+        double seconds = 0, predicted = 0;
+        std::vector<SlicePlan> plans(size, rung.plan);
+        for (std::size_t i = 0; i < size; ++i) plans[i].cuts = n >= 4 ? exact[i].cuts : std::vector<double>{};
+        const auto found = solve(scenes, plans, &seconds);
+        for (std::size_t i = 0; i < size; ++i) {
+          rung.error.push_back(error_of(found[i], truth[i]));
+          rung.cost.push_back(solvers::plan_cost(scenes[i], 0, plans[i]));
+          predicted += rung.cost.back();
+        }
+        if ((n == 1 || n == 4 || n == 16) && (q == 1 || q == 4))
+          std::printf("  %-11s %3d x %2d  %6.2f us, %5.2f of predicted\n",
+                      fidelity == Fidelity::rigid   ? "rigid"
+                      : fidelity == Fidelity::slice ? "slice"
+                                                    : "first order",
+                      n, q, 1e6 * seconds / static_cast<double>(size), seconds / predicted);
+        rungs.push_back(std::move(rung));
+      }
+
+  std::printf("\n%8s %9s %9s %9s %8s %8s %9s %9s   %s\n", "TOL", "share", "worst", "cost 50%", "95 %", "time",
+              "plan us", "solve us", "rungs: rigid, first order, slice");
+  constexpr std::array<double, 9> edges{1e-4, 1e-3, 1e-2, 0.03, 0.1, 0.3, 1, 3, 1e300};
+  std::map<double, std::array<int, edges.size()>> histograms;
+  for (double tolerance : {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) {
+    std::vector<model::Scene> asked = scenes;
+    std::vector<SegmentTask> tasks;
+    for (model::Scene& scene : asked) {
+      scene.goal.accuracy = tolerance;
+      scene.goal.up_to = Fidelity::slice;
+      tasks.push_back({&scene, 0});
+    }
+    static solvers::AutoModel model(PETSC_COMM_SELF);
+    auto found = model.solve(tasks);
+    std::vector<SlicePlan> plans;
+    std::vector<SlicePlan> best(size);
+    for (std::size_t i = 0; i < size; ++i) {
+      double cheapest = 1e300;
+      best[i] = exact[i];
+      for (const Rung& rung : rungs)
+        if (rung.error[i] <= tolerance && rung.cost[i] < cheapest) {
+          cheapest = rung.cost[i];
+          best[i] = rung.plan;
+          best[i].cost = cheapest;
+          if (best[i].slice_count >= 4) best[i].cuts = exact[i].cuts;
+        }
+    }
+    // In turn, so that all see the same machine.
+    double seconds = 0, planning = 0, hindsight = 0;
+    for (int repeat = 0; repeat < repeats; ++repeat) {
+      const double start = processor_seconds();
+      found = model.solve(tasks);
+      const double solved = processor_seconds();
+      solvers::plan_segments(tasks, plans);
+      planning += (processor_seconds() - solved) / repeats;
+      seconds += (solved - start) / repeats;
+      double once = 0;
+      (void)solve(asked, best, &once);
+      hindsight += once / repeats;
+    }
+    std::vector<double> ratios;
+    int good = 0, all = 0;
+    double worst = 0;
+    std::map<Fidelity, int> chosen;
+    for (std::size_t i = 0; i < size; ++i) {
+      const double cheapest = best[i].cost;
+      if (!counts[i]) continue;
+      const double error = error_of(found[i], truth[i]);
+      const double estimate = found[i].discretisation_error + model.plans()[i].model_error;
+      ++all;
+      good += error <= tolerance;
+      worst = std::max(worst, error / tolerance);
+      ++chosen[found[i].fidelity];
+      if (cheapest > 0) ratios.push_back((model.plans()[i].cost + solvers::planning_cost) / cheapest);
+      const double ratio = error / std::max(estimate, 1e-14);
+      if (tolerance == only && (error > tolerance || ratios.back() > 2.5))
+        tell(asked[i], model.plans()[i], best[i], found[i], error, estimate, ratios.back());
+      for (std::size_t k = 0; k < edges.size(); ++k)
+        if (error > 1e-13 && ratio < edges[k]) {
+          ++histograms[tolerance][k];
+          break;
+        }
+    }
+    std::printf("%8.0e %8.2f%% %9.2g %9.2f %8.2f %8.2f %9.2f %9.2f   %d %d %d\n", tolerance,
+                100.0 * good / all, worst, quantile(ratios, 0.5), quantile(ratios, 0.95), seconds / hindsight,
+                1e6 * planning / static_cast<double>(size), 1e6 * seconds / static_cast<double>(size),
+                chosen[Fidelity::rigid], chosen[Fidelity::first_order], chosen[Fidelity::slice]);
+  }
+  std::printf("\ntrue over estimated error, share of scenes [%%], where the true error is above 1e-13\n%8s",
+              "TOL");
+  for (std::size_t k = 0; k + 1 < edges.size(); ++k) std::printf("  <%7.0e", edges[k]);
+  std::printf("    beyond\n");
+  for (auto it = histograms.rbegin(); it != histograms.rend(); ++it) {
+    int all = 0;
+    for (int number : it->second) all += number;
+    std::printf("%8.0e", it->first);
+    for (int number : it->second) std::printf("  %8.2f", 100.0 * number / std::max(all, 1));
+    std::printf("\n");
+  }
+}

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-2-Clause
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "gaiter/model/leg.hpp"
+#include "gaiter/physics/vector_math.hpp"
+
+// What plans go by, of 64 segments at a time, each by its slice at mid-height. Lengths are divided by the
+// inner reference radius A of the wall; pressures are in Pa.
+namespace gaiter::physics {
+
+constexpr int forecast_points = 8;  // over the height, and through the wall, for which errors are worked out
+
+// Given of each segment.
+struct ForecastInput {
+  struct Term {
+    Pack mu, alpha;  // [Pa, 1]
+  };
+  Pack gap, leg_radius;     // (R - A)/A and R/A at mid-height
+  Pack log_area;            // ln(B^2/A^2)
+  Pack taper;               // half the difference of the end radii over the mean radius
+  Pack slope;               // of the leg's outline: difference of the end radii over the height
+  Pack rise;                // difference of the end radii
+  Pack drive;               // 2 eps V^2/A^2, layers as if the field were the same in all [Pa]
+  Pack membrane_drive;      // eps V^2/h^2 [Pa]
+  Pack gives_way;           // 1, or 0: a rigid leg
+  Pack slides;              // 1, or 0: held on the slope
+  Pack pressure_limit;      // beyond which the bandage is slack [Pa]
+  std::array<Pack, 4> leg;  // a, b, c, d of the strain law; neo-Hookean: K, G/3, K + G/3 [Pa]
+  std::vector<Term> terms;
+  std::array<Pack, 2> wall_ratio;  // A^2/s at the points of the wall, by close()
+  model::LegMaterial material = model::LegMaterial::compliance;
+
+  void close();  // once all else is given
+};
+
+// Of one state, at rest or under voltage; see SegmentForecast::State.
+struct ForecastState {
+  Pack rigid, first, pressure, passive, slope, gain, strain, response;
+  Pack narrow_net, wide_net;  // at the ends, on the leg without pressure; negative: open
+  Pack narrow;                // at the narrow end
+};
+
+// Error of a Gauss rule for the mean of the pressure, leading order and, for more than some points, the size
+// it has at most: over the height (as if the leg were rigid), and through the wall. Entry n: n points.
+struct ForecastErrors {
+  std::array<Pack, forecast_points + 2> height, wall;  // [Pa]
+};
+
+// Pressure by two points through the wall; the leg's strain from a few Newton steps. `rest`: the state without
+// voltage, if it is known, to start from.
+void forecast_state(const ForecastInput& input, bool voltage, const ForecastState* rest,
+                    ForecastState& state);
+
+// At a strain of the leg.
+void forecast_errors(const ForecastInput& input, const Pack& strain, ForecastErrors& errors);
+
+// Relative change of the mean pressure if the tube slides (or, held, lies on the slope); NaN: beyond the
+// first order. Thin wall, leg that does not give way. With w(r, z') the tube's energy per reference height,
+// balance along the leg of slope m asks for (w_z')' = w_r m; where nothing has slid, it is missed by f = -m
+// D, D = w_r
+// - w_rz. The slip that makes up for it, u'' = -f/w_zz with u = 0 at both ends, changes the mean of P = w_r/r
+// by
+//   - m^2 H^2 D (D/r)' / (12 w_zz).
+// The slope itself stretches the tube by sqrt(1 + m^2) along the meridian: w_rz (sqrt(1 + m^2) - 1) / r.
+void forecast_sliding(const ForecastInput& input, bool voltage, Pack& change);
+
+}  // namespace gaiter::physics
