@@ -179,6 +179,32 @@ TEST(Effectivity, OfTheMeanPressureIsNearOne) {
   expect_effective<2>(20, 1.4, 0, 0.5, 2);
 }
 
+// Newton's method starts on a finer mesh from the coarser one's state. From the sliding slices' it has to
+// move the lift-off of a steep cone vertex by vertex, in more steps the finer the mesh.
+TEST(CoarserMesh, HasAllButFoundTheState) {
+  model::Scene scene = cone(20, 1.1);
+  for (int refine : {1, 2}) {
+    solvers::AxisymCase<2> coarser(PETSC_COMM_SELF, scene, 0, 0, refine - 1),
+        finer(PETSC_COMM_SELF, scene, 0, 0, refine), alone(PETSC_COMM_SELF, scene, 0, 0, refine);
+    ASSERT_TRUE(coarser.rest()[0].converged);
+    const auto from_coarser = finer.rest(coarser)[0], from_slices = alone.rest()[0];
+    ASSERT_TRUE(from_coarser.converged && from_slices.converged);
+    EXPECT_NEAR(from_coarser.pressure, from_slices.pressure, 1e-9 * from_slices.pressure);
+    EXPECT_LE(from_coarser.iterations, 6);
+    EXPECT_LT(from_coarser.iterations, from_slices.iterations);
+  }
+  scene = cone(10, 1.8, 5e3);
+  solvers::AxisymCase<2> coarser(PETSC_COMM_SELF, scene, 0, 0, 0), finer(PETSC_COMM_SELF, scene, 0, 0, 1),
+      alone(PETSC_COMM_SELF, scene, 0, 0, 1);
+  ASSERT_TRUE(coarser.rest()[0].converged && coarser.actuated()[0].converged);
+  ASSERT_TRUE(alone.rest()[0].converged);
+  const auto rest = finer.rest(coarser)[0], actuated = finer.actuated(coarser)[0],
+             by_itself = alone.actuated()[0];
+  ASSERT_TRUE(rest.converged && actuated.converged && by_itself.converged);
+  EXPECT_NEAR(actuated.pressure, by_itself.pressure, 1e-9 * by_itself.pressure);
+  EXPECT_EQ(actuated.stable_voltage, 1);
+}
+
 // The coarsest mesh has no coarser one to compare with.
 TEST(ErrorEstimate, OfTheCoarsestMeshCoversItsError) {
   for (double degrees : {2.0, 10.0, 20.0})

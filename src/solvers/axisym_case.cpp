@@ -6,6 +6,7 @@
 
 #include "gaiter/petsc/check.hpp"
 #include "gaiter/petsc/session.hpp"
+#include "gaiter/solvers/axisym_prolong.hpp"
 
 namespace gaiter::solvers {
 
@@ -89,7 +90,8 @@ AxisymCase<P>::AxisymCase(MPI_Comm comm, const model::Scene& scene, std::size_t 
   system_ = std::make_unique<AxisymSystem<P>>(comm, std::move(space), axisym_materials(scene, first, last));
   solver_ = std::make_unique<AxisymSolver<P>>(*system_);
   petsc::check(DMCreateGlobalVector(system_->space().plex.get(), x_.out()));
-  petsc::check(VecDuplicate(x_.get(), kept_.out()));
+  for (petsc::Vector* vector : {&kept_, &rest_, &actuated_})
+    petsc::check(VecDuplicate(x_.get(), vector->out()));
 }
 
 template <int P>
@@ -154,6 +156,38 @@ bool AxisymCase<P>::take_model(model::Fidelity fidelity, bool actuated) {
   system_->energise(actuated ? 1 : 0);
   petsc::check(set_start<P>(*system_, states(source), x_.get()));
   return true;
+}
+
+// Back to a state that was found.
+template <int P>
+void AxisymCase<P>::recall(bool energised) {
+  bool admissible = true;
+  petsc::check(VecCopy((energised ? actuated_ : rest_).get(), x_.get()));
+  system_->energise(energised ? 1 : 0);
+  petsc::check(system_->evaluate(x_.get(), kept_.get(), admissible));
+}
+
+template <int P>
+AxisymReport AxisymCase<P>::solve_from(AxisymCase& coarser, bool energised) {
+  coarser.recall(energised);
+  system_->energise(energised ? 1 : 0);
+  petsc::check(prolongate<P, P>(coarser.system(), coarser.state(), *system_, x_.get()));
+  return solver_->solve(x_.get(), most_path_iterations);
+}
+
+template <int P>
+std::vector<AxisymSummary> AxisymCase<P>::rest(AxisymCase& coarser) {
+  const AxisymReport report = solve_from(coarser, false);
+  return good(report) ? summarise(report, report.iterations, false) : rest();
+}
+
+template <int P>
+std::vector<AxisymSummary> AxisymCase<P>::actuated(AxisymCase& coarser) {
+  if (scene_.axisym.electrostatics == model::Electrostatics::off) return actuated();
+  const AxisymReport report = solve_from(coarser, true);
+  if (good(report)) return summarise(report, report.iterations, true);
+  recall(false);
+  return actuated();
 }
 
 template <int P>
@@ -303,7 +337,8 @@ AxisymReport AxisymCase<P>::follow_spring(int& iterations) {
 
 template <int P>
 std::vector<AxisymSummary> AxisymCase<P>::summarise(const AxisymReport& report, int iterations,
-                                                    bool energised) const {
+                                                    bool energised) {
+  if (report.converged) petsc::check(VecCopy(x_.get(), (energised ? actuated_ : rest_).get()));
   std::vector<AxisymSummary> summaries;
   for (std::size_t segment = first_; segment <= last_; ++segment) {
     AxisymSummary summary;

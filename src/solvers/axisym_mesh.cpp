@@ -93,13 +93,14 @@ AxisymMesh make_axisym_mesh(const model::Scene& scene, std::size_t first, std::s
   mesh.length = scene.leg.segments[first].mean_radius();
   AxisymBlock leg;
   leg.height.push_back(0);
-  leg.across =
-      refined(graded(resolution.leg_columns, resolution.skin_grading, false, true), resolution.refinements);
   const int row_refinements = resolution.refinements + resolution.row_refinements;
+  const int column_refinements = resolution.refinements + resolution.column_refinements;
+  leg.across =
+      refined(graded(resolution.leg_columns, resolution.skin_grading, false, true), column_refinements);
   const std::vector<double> tube_lines =
       refined(graded(resolution.tube_rows, resolution.end_grading, true, true), row_refinements);
   const std::vector<double> wall_lines =
-      refined(graded(resolution.tube_columns, 1, false, false), resolution.refinements);
+      refined(graded(resolution.tube_columns, 1, false, false), column_refinements);
 
   for (std::size_t s = first; s <= last; ++s) {
     const model::Segment& segment = scene.leg.segments[s];

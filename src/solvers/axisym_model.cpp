@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "gaiter/solvers/axisym_case.hpp"
 #include "gaiter/solvers/axisym_enriched.hpp"
@@ -15,73 +16,102 @@ namespace {
 using model::Status;
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
-constexpr double dual_safety = 5;  // the dual finds 0.3 of the pressures' error at least (expected_changes)
-
-struct Solved {
-  std::vector<AxisymSummary> rest, actuated;  // a segment each
-  std::vector<double> pressure_error;         // of the worse state, relative, if estimated
-  bool converged() const { return rest[0].converged && actuated[0].converged; }
-};
+constexpr double dual_safety = 5;  // the dual finds 0.28 of the pressures' error at least (expected_changes)
 
 // Segments first to last of a scene on one mesh.
 struct Piece {
   const model::Scene& scene;
   std::size_t first, last;
-  bool actuated = true;  // whether the state under voltage is wanted
+
+  bool voltage() const {
+    const auto& modules = scene.bandage.modules;
+    return std::any_of(modules.begin() + first, modules.begin() + last + 1,
+                       [](const model::Module& module) { return module.voltage != 0; });
+  }
 };
 
 double change(double a, double b) {
   return b != 0 ? std::fabs(a / b - 1) : 0;
 }
 
-// Takes the pressures' errors at the state last found into account; false where they cannot be told.
+// A piece on one of its meshes, and what was found there, a segment each.
 template <int P>
-bool add_error(const AxisymCase<P>& problem, AxisymCase<P>& finer,
-               const std::vector<AxisymSummary>& summaries, std::vector<double>& errors) {
-  const std::vector<AxisymChange> changes = expected_changes(problem, finer);
-  errors.resize(changes.size(), 0.0);
-  for (std::size_t k = 0; k < changes.size(); ++k) {
-    const double pressure = summaries[k].pressure;
-    errors[k] = std::max(errors[k], dual_safety * change(pressure + changes[k].pressure, pressure));
+struct Level {
+  Level(MPI_Comm comm, const Piece& piece, int refine)
+      : problem(comm, piece.scene, piece.first, piece.last, refine) {}
+
+  AxisymCase<P> problem;
+  std::vector<AxisymSummary> rest, actuated;
+  std::vector<double> error;  // of the pressures, relative, of the worse state; empty: not known
+
+  bool at_rest() const { return rest[0].converged && rest[0].stable; }
+  bool converged() const { return rest[0].converged && actuated[0].converged; }
+
+  void solve_rest(Level* coarser) {
+    rest = coarser && coarser->at_rest() ? problem.rest(coarser->problem) : problem.rest();
+    actuated = rest;
   }
-  return !changes.empty();
+  void solve_actuated(const Piece& piece) {
+    if (piece.voltage() && rest[0].converged) actuated = problem.actuated();
+  }
+
+  // What the mesh before makes of the same states.
+  void compare(const Level& coarser) {
+    if (!coarser.rest[0].converged || (converged() && !coarser.converged())) return;
+    for (std::size_t k = 0; k < rest.size(); ++k)
+      error.push_back(std::max(change(coarser.rest[k].pressure, rest[k].pressure),
+                               converged() ? change(coarser.actuated[k].pressure, actuated[k].pressure) : 0));
+  }
+
+  // What the dual expects of the next mesh at the state last found; false where it expects nothing. In a leg
+  // of several segments a segment has its neighbours' errors too, which lean on it.
+  bool add_expected(Level& finer, const std::vector<AxisymSummary>& state) {
+    const std::vector<AxisymChange> changes = expected_changes(problem, finer.problem);
+    error.resize(changes.size(), 0.0);
+    for (std::size_t k = 0; k < changes.size(); ++k)
+      for (std::size_t i = std::max<std::size_t>(k, 1) - 1; i < std::min(k + 2, changes.size()); ++i) {
+        const double pressure = state[i].pressure;
+        error[k] = std::max(error[k], dual_safety * change(pressure + changes[i].pressure, pressure));
+      }
+    return !changes.empty();
+  }
+};
+
+template <int P>
+void show(Level<P>& level, bool actuated, const AxisymObserver& observer) {
+  const auto& state = actuated ? level.actuated : level.rest;
+  if (observer && state[0].converged) level.problem.show(actuated, observer);
 }
 
-// `estimate`: the errors too, from the dual on a mesh refined once more.
+// On the mesh that the scene asks for.
 template <int P>
-Solved solve_states(MPI_Comm comm, const Piece& piece, int refine, bool estimate,
-                    const AxisymObserver& observer) {
-  AxisymCase<P> problem(comm, piece.scene, piece.first, piece.last, refine);
-  Solved solved;
-  solved.rest = problem.rest();
-  std::unique_ptr<AxisymCase<P>> finer;
-  if (estimate && solved.rest[0].converged) {
-    finer = std::make_unique<AxisymCase<P>>(comm, piece.scene, piece.first, piece.last, refine + 1);
-    estimate = add_error(problem, *finer, solved.rest, solved.pressure_error);
+std::unique_ptr<Level<P>> solve_level(MPI_Comm comm, const Piece& piece, const AxisymObserver& observer) {
+  const int refine = piece.scene.axisym.refine;
+  // Newton's method starts where the coarser mesh's ended: the end that lifts off is then all but found.
+  std::unique_ptr<Level<P>> coarser, finer;
+  if (refine > 0) {
+    coarser = std::make_unique<Level<P>>(comm, piece, refine - 1);
+    coarser->solve_rest(nullptr);
   }
-  if (observer && solved.rest[0].converged) problem.show(false, observer);
-  const auto& modules = piece.scene.bandage.modules;
-  const bool voltage = std::any_of(modules.begin() + piece.first, modules.begin() + piece.last + 1,
-                                   [](const model::Module& module) { return module.voltage != 0; });
-  const bool actuate = voltage && piece.actuated && solved.rest[0].converged;
-  solved.actuated = actuate ? problem.actuated() : solved.rest;
-  if (observer && actuate && solved.actuated[0].converged) problem.show(true, observer);
-  if (estimate && finer && actuate && solved.actuated[0].converged)
-    estimate = add_error(problem, *finer, solved.actuated, solved.pressure_error);
-  if (!estimate) solved.pressure_error.clear();
-  return solved;
-}
-
-Solved solve_states(MPI_Comm comm, const Piece& piece, int refine, bool estimate,
-                    const AxisymObserver& observer = {}) {
-  switch (piece.scene.axisym.order) {
-    case 3:
-      return solve_states<3>(comm, piece, refine, estimate, observer);
-    case 4:
-      return solve_states<4>(comm, piece, refine, estimate, observer);
-    default:
-      return solve_states<2>(comm, piece, refine, estimate, observer);
+  auto level = std::make_unique<Level<P>>(comm, piece, refine);
+  level->solve_rest(coarser.get());
+  show(*level, false, observer);
+  // No mesh is coarser than the coarsest, and twice a solve there is still cheaper than one on the next.
+  bool expected = refine == 0 && level->rest[0].converged;
+  if (expected) {
+    finer = std::make_unique<Level<P>>(comm, piece, 1);
+    expected = level->add_expected(*finer, level->rest);
   }
+  level->solve_actuated(piece);
+  if (piece.voltage() && level->rest[0].converged) show(*level, true, observer);
+  if (expected && piece.voltage() && level->converged())
+    expected = level->add_expected(*finer, level->actuated);
+  if (!expected) level->error.clear();
+  if (coarser && level->rest[0].converged) {
+    if (level->converged()) coarser->solve_actuated(piece);
+    level->compare(*coarser);
+  }
+  return level;
 }
 
 Status status_of(const AxisymSummary& rest, const AxisymSummary& actuated, const model::Scene& scene,
@@ -137,28 +167,30 @@ model::SegmentResult result_of(const model::Scene& scene, std::size_t segment, c
   return result;
 }
 
+template <int P>
+std::vector<model::SegmentResult> results_of(const Piece& piece, const Level<P>& level) {
+  const double unit = axisym_stress_unit(piece.scene.bandage),
+               length = piece.scene.leg.segments[piece.first].mean_radius();
+  std::vector<model::SegmentResult> results;
+  for (std::size_t k = 0; k < level.rest.size(); ++k) {
+    results.push_back(
+        result_of(piece.scene, piece.first + k, level.rest[k], level.actuated[k], length, unit));
+    if (!level.error.empty())
+      results.back().discretisation_error = results.back().error_estimate = level.error[k];
+  }
+  return results;
+}
+
 std::vector<model::SegmentResult> solve_piece(MPI_Comm comm, const Piece& piece,
                                               const AxisymObserver& observer) {
-  const model::Scene& scene = piece.scene;
-  const double unit = axisym_stress_unit(scene.bandage),
-               length = scene.leg.segments[piece.first].mean_radius();
-  const int refine = scene.axisym.refine;
-  // There is no mesh coarser than the coarsest, and twice its solve is still cheaper than the next one's.
-  const Solved fine = solve_states(comm, piece, refine, refine == 0, observer);
-  std::vector<model::SegmentResult> results;
-  for (std::size_t k = 0; k < fine.rest.size(); ++k)
-    results.push_back(result_of(scene, piece.first + k, fine.rest[k], fine.actuated[k], length, unit));
-  for (std::size_t k = 0; k < fine.pressure_error.size(); ++k)
-    results[k].discretisation_error = results[k].error_estimate = fine.pressure_error[k];
-  if (!fine.rest[0].converged || refine == 0) return results;
-  const Solved coarse =
-      solve_states(comm, {scene, piece.first, piece.last, fine.converged()}, refine - 1, false);
-  if (!coarse.rest[0].converged || (fine.converged() && !coarse.converged())) return results;
-  for (std::size_t k = 0; k < results.size(); ++k)
-    results[k].discretisation_error = results[k].error_estimate =
-        std::max(change(coarse.rest[k].pressure, fine.rest[k].pressure),
-                 fine.converged() ? change(coarse.actuated[k].pressure, fine.actuated[k].pressure) : 0);
-  return results;
+  switch (piece.scene.axisym.order) {
+    case 3:
+      return results_of(piece, *solve_level<3>(comm, piece, observer));
+    case 4:
+      return results_of(piece, *solve_level<4>(comm, piece, observer));
+    default:
+      return results_of(piece, *solve_level<2>(comm, piece, observer));
+  }
 }
 
 // Where the radii of neighbouring segments differ, the leg of one piece takes their mean.

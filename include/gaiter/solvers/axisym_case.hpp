@@ -42,6 +42,11 @@ class AxisymCase {
   // From the state at rest, which comes first. @note Collective.
   std::vector<AxisymSummary> actuated();
 
+  // The same from the states that a coarser mesh has found, where Newton's method gets there from these.
+  // @note Collective.
+  std::vector<AxisymSummary> rest(AxisymCase& coarser);
+  std::vector<AxisymSummary> actuated(AxisymCase& coarser);
+
   int unknowns() const;  // of all ranks
 
   // Hands the fields of the state last found over, on rank 0. @note Collective.
@@ -67,13 +72,16 @@ class AxisymCase {
   AxisymReport solve_from(const model::Scene& scene, int& iterations);
   AxisymReport soften_leg(int& iterations);
   AxisymReport follow_spring(int& iterations);
-  std::vector<AxisymSummary> summarise(const AxisymReport& report, int iterations, bool energised) const;
+  std::vector<AxisymSummary> summarise(const AxisymReport& report, int iterations, bool energised);
+  AxisymReport solve_from(AxisymCase& coarser, bool energised);
+  void recall(bool energised);
 
   const model::Scene& scene_;
   std::size_t first_, last_;
   std::unique_ptr<AxisymSystem<P>> system_;
   std::unique_ptr<AxisymSolver<P>> solver_;
   petsc::Vector x_, kept_;
+  petsc::Vector rest_, actuated_;  // the states found
 };
 
 }  // namespace gaiter::solvers

@@ -43,7 +43,7 @@ struct AxisymResolution {
   int leg_rows = 10, leg_columns = 5;
   double end_grading = 8, skin_grading = 6;
   int refinements = 0;
-  int row_refinements = 0;  // more, of the rows alone
+  int row_refinements = 0, column_refinements = 0;  // more, of the rows or the columns alone
 };
 
 struct AxisymMesh {

@@ -17,7 +17,8 @@ namespace gaiter::solvers {
 // it gives the same tasks and gets all results. `error_estimate` compares with the mesh one refinement
 // coarser, and is on the coarsest mesh five times what the dual expects of the next finer one
 // (expected_changes), NaN where it expects nothing; `iterations` is the most Newton steps of rest or actuated
-// state, failed starts and steps of a continuation included, and the same for all segments of a leg.
+// state, failed starts and steps of a continuation included, and the same for all segments of a leg. The
+// state at rest starts from that of the coarser mesh.
 //
 // In a leg the volume of a segment is that of its material, between boundaries that move axially with the
 // leg. Where the radii of neighbouring segments differ, both are taken as their mean.

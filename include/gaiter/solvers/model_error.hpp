@@ -30,7 +30,7 @@ struct ModelError {
 // coarsest mesh, which is weighted by the dual solution of each output (AxisymDual), then once more after a
 // step of Newton's method, without which the ends that lift off do not show. The mesh's own error is below
 // some 1e-4. What it found against solved finite elements is in tests/model_error.cpp and
-// benchmarks/model_error.cpp.
+// benchmarks/axisym_model_error.cpp.
 //
 // `own` is the segment's result by `fidelity`, slice or sliding. On this rank alone.
 ModelError estimate_model_error(const SegmentTask& task, const model::SegmentResult& own,
