@@ -158,8 +158,8 @@ TEST(Archive, TellsDimensionsUnitsFlagsAndProvenance) {
     EXPECT_EQ(archive.variables.at("voltage").attributes.at("units"), "V");
     const Variable& fidelity = archive.variables.at("fidelity");
     EXPECT_EQ(fidelity.type, "int8");
-    EXPECT_EQ(fidelity.attributes.at("flag_values"), "0 1 2 3");
-    EXPECT_EQ(fidelity.attributes.at("flag_meanings"), "rigid slice sliding axisym");
+    EXPECT_EQ(fidelity.attributes.at("flag_values"), "0 1 2 3 4");
+    EXPECT_EQ(fidelity.attributes.at("flag_meanings"), "rigid slice sliding axisym first_order");
     EXPECT_EQ(archive.variables.at("iterations").type, "int32");
     EXPECT_EQ(archive.attributes.at("options"), provenance.options);
     EXPECT_EQ(archive.attributes.at("schema_version"), "1");

@@ -18,11 +18,11 @@ REALS = {
     "pressure_actuated_rigid": "Pa", "pressure_rest_area_mean": "Pa", "pressure_actuated_area_mean": "Pa",
     "pressure_rest_change": "1", "pressure_actuated_change": "1", "actuation_drop": "Pa", "actuation_pressure": "Pa", "volume_initial": "m3", "volume_rest": "m3",
     "volume_actuated": "m3", "volume_change": "1", "radius_actuated": "m", "stretch_actual": "1", "slip_max": "m",
-    "electric_field_max": "V m-1", "voltage_stable": "V", "error_estimate": "1",
+    "electric_field_max": "V m-1", "voltage_stable": "V", "error_estimate": "1", "discretisation_error": "1", "model_error": "1",
 }
 FLAGS = {
     "status": "contact slack lifted extrapolated pulled_in no_equilibrium diverged invalid",
-    "fidelity": "rigid slice sliding axisym",
+    "fidelity": "rigid slice sliding axisym first_order",
 }
 PER_CASE = {
     "bandage_stretch": ("1", 1.5 + 0.125 * np.arange(CASES)),
@@ -79,6 +79,8 @@ def check_with_xarray(path):
         np.testing.assert_array_equal(data["status"].values, ROW % 7)
         np.testing.assert_array_equal(data["fidelity"].values, ROW % 2)
         np.testing.assert_array_equal(data["iterations"].values, 100000 + ROW)
+        np.testing.assert_array_equal(data["slice_count"].values, 200000 + ROW)
+        np.testing.assert_array_equal(data["wall_points"].values, 300000 + ROW)
         for name, (unit, values) in PER_CASE.items():
             assert data[name].dims == ("case",), name
             assert data[name].dtype == np.float64, name

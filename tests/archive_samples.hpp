@@ -88,6 +88,10 @@ inline SegmentResult sample_row(std::size_t row) {
   result.electric_field_max = 18000 + x;
   result.voltage_stable = 19000 + x;
   result.error_estimate = 20000 + x;
+  result.discretisation_error = 21000 + x;
+  result.model_error = 22000 + x;
+  result.slice_count = static_cast<int>(200000 + row);
+  result.wall_points = static_cast<int>(300000 + row);
   result.iterations = static_cast<int>(100000 + row);
   result.status = static_cast<model::Status>(row % 7);
   result.fidelity = static_cast<model::Fidelity>(row % 2);
@@ -197,6 +201,10 @@ inline void expect_rows(const Archive& archive, const std::vector<SegmentResult>
   expect("electric_field_max", &SegmentResult::electric_field_max);
   expect("voltage_stable", &SegmentResult::voltage_stable);
   expect("error_estimate", &SegmentResult::error_estimate);
+  expect("discretisation_error", &SegmentResult::discretisation_error);
+  expect("model_error", &SegmentResult::model_error);
+  expect("slice_count", &SegmentResult::slice_count);
+  expect("wall_points", &SegmentResult::wall_points);
   expect("iterations", &SegmentResult::iterations);
   expect("status", &SegmentResult::status);
   expect("fidelity", &SegmentResult::fidelity);

@@ -85,7 +85,7 @@ TEST(Leg, OfThePaperAgreesWithItsSegments) {
     EXPECT_EQ(whole[s].status, model::Status::contact);
     // The leg moves axially across the segments' ends, up to 1.2 % of the pressure.
     EXPECT_NEAR(whole[s].pressure_rest, alone[s].pressure_rest, 0.013 * alone[s].pressure_rest);
-    EXPECT_LT(whole[s].error_estimate, 5e-4);
+    EXPECT_LT(whole[s].discretisation_error, 5e-4);
     EXPECT_EQ(whole[s].iterations, whole[0].iterations);
     EXPECT_LE(whole[s].iterations, 15);
   }

@@ -36,7 +36,7 @@ inline Given two_segments_with(const Given& more) {
 
 // Every value of a scene in one text, to compare scenes exactly.
 inline std::string describe(const model::Scene& scene) {
-  const auto& [leg, bandage, fidelity, contact_axial, how, axisym] = scene;
+  const auto& [leg, bandage, fidelity, contact_axial, how, axisym, goal] = scene;
   std::string text;
   for (const model::Segment& s : leg.segments) {
     text += fmt::format("{} {} {} {} {} {} {} {}\n", s.name, s.height, s.lower_radius, s.upper_radius,
@@ -56,6 +56,8 @@ inline std::string describe(const model::Scene& scene) {
       fmt::format("{} {} {} {} {} {} {}\n", int(contact_axial), how.sliding_count, int(axisym.electrostatics),
                   int(axisym.multipliers), axisym.order, axisym.refine, axisym.ranks_per_case);
   text += fmt::format("{} {}\n", leg.shear_modulus, bandage.bulk_modulus);
+  text += fmt::format("{} {} {} {} {} {}\n", goal.accuracy, int(goal.up_to), goal.pressure_rest,
+                      goal.pressure_actuated, goal.actuation_drop, goal.volume_change);
   text += fmt::format("{} {}\n", leg.radius_scale, leg.compliance_scale);
   return text;
 }

@@ -71,6 +71,8 @@ TEST(Scene, EveryOptionSetsItsOwnValue) {
     double (*get)(const Scene&);
   };
   const std::vector<Case> cases = {
+      {"accuracy", "1e-4", 1e-4, [](const Scene& s) { return s.goal.accuracy; }},
+      {"auto_up_to", "sliding", 2, [](const Scene& s) { return double(s.goal.up_to); }},
       {"bandage_high_length", "15 cm", 0.15, [](const Scene& s) { return s.bandage.modules[1].length; }},
       {"bandage_high_stretch", "1.7", 1.7, [](const Scene& s) { return s.bandage.modules[1].stretch; }},
       {"bandage_high_voltage", "3 kV", 3000, [](const Scene& s) { return s.bandage.modules[1].voltage; }},

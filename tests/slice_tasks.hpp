@@ -14,7 +14,7 @@
 namespace gaiter::tasks {
 
 // All numbers of a result, so that two can be compared bit by bit and sent over ranks.
-constexpr int fields = 23;
+constexpr int fields = 27;
 using Numbers = std::array<double, fields>;
 
 inline Numbers numbers_of(const model::SegmentResult& r) {
@@ -40,7 +40,11 @@ inline Numbers numbers_of(const model::SegmentResult& r) {
           r.slip_max,
           r.pressure_rest_change,
           r.pressure_actuated_change,
-          r.voltage_stable};
+          r.voltage_stable,
+          r.discretisation_error,
+          r.model_error,
+          static_cast<double>(r.slice_count),
+          static_cast<double>(r.wall_points)};
 }
 
 inline bool same_bits(const Numbers& a, const Numbers& b) {

@@ -55,8 +55,8 @@ TEST_P(SlidingConvergence, HasItsOrder) {
     slip.push_back(std::fabs(result.slip_max - exact.slip_max) / exact.slip_max);
     ASSERT_GT(pressure.back(), 0);
     // The estimate is on the safe side, and still of use.
-    EXPECT_GT(result.error_estimate, pressure.back()) << count;
-    EXPECT_LT(result.error_estimate, 1e5 * pressure.back() + 1e-9) << count;
+    EXPECT_GT(result.discretisation_error, pressure.back()) << count;
+    EXPECT_LT(result.discretisation_error, 1e5 * pressure.back() + 1e-9) << count;
   }
   EXPECT_GT(fitted_order(study.counts, pressure), study.pressure_order);
   EXPECT_GT(fitted_order(study.counts, slip), study.slip_order);
@@ -81,7 +81,7 @@ TEST(SlidingConvergenceOfKinks, IsOfSecondOrder) {
     for (std::size_t k = 0; k < counts.size(); ++k) {
       const model::SegmentResult result = solve(stretch, 11.3e3, counts[k]);
       const double error = std::fabs(result.pressure_actuated / exact.pressure_actuated - 1);
-      EXPECT_GT(result.error_estimate, 0.2 * error - 1e-6) << stretch << ", " << counts[k];
+      EXPECT_GT(result.discretisation_error, 0.2 * error - 1e-6) << stretch << ", " << counts[k];
       pressure[k] += error;
     }
   }

@@ -97,7 +97,7 @@ TEST(SlidingStatus, BeyondTheLastStableStretch) {
       scene.discretisation.sliding_count = count;
       const model::SegmentResult result = solve_sliding({&scene, 0}).result;
       EXPECT_EQ(result.status, Status::extrapolated) << stretch;
-      EXPECT_LT(result.error_estimate, 1e-3) << stretch;
+      EXPECT_LT(result.discretisation_error, 1e-3) << stretch;
     }
     for (double stretch : {2.62, 2.8, 3.5}) {
       model::Scene scene = anchored(stretch, 0);
@@ -146,7 +146,7 @@ TEST_P(SlidingExtremes, AreSolved) {
               result.status == Status::slack)
       << static_cast<int>(result.status);
   EXPECT_LE(result.iterations, 15);
-  EXPECT_LT(result.error_estimate, 1e-4);
+  EXPECT_LT(result.discretisation_error, 1e-4);
   // The leg gives way, so the pressure is below the rigid leg's; sliding towards the narrow end only.
   EXPECT_LT(result.pressure_rest, result.pressure_rest_rigid * (1 + 1e-12));
   EXPECT_GT(result.pressure_rest, 0);

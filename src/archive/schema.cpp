@@ -76,7 +76,21 @@ constexpr std::array table{
         "largest voltage reached on the branch of stable states that starts at rest; the module's own where "
         "the state under voltage was found",
         &Row::voltage_stable},
-    Column{"error_estimate", "1", "estimated relative error of the pressures", &Row::error_estimate},
+    Column{
+        "error_estimate", "1",
+        "estimated relative error of the pressures: discretisation_error, plus model_error where it is known",
+        &Row::error_estimate},
+    Column{"discretisation_error", "1",
+           "estimated relative error of the pressures against the same model fully resolved",
+           &Row::discretisation_error},
+    Column{
+        "model_error", "1",
+        "estimated relative change of the pressures by the models beyond this one, as far as known: the leg "
+        "that gives way, the bandage that slides; NaN where unknown",
+        &Row::model_error},
+    Column{"slice_count", "1", "slices over the height of the segment; 0 for finite elements",
+           &Row::slice_count},
+    Column{"wall_points", "1", "Gauss points through the wall; 0 for finite elements", &Row::wall_points},
     Column{"iterations", "1", "iterations of the solver, the most that any slice of the segment took",
            &Row::iterations},
     Column{"status", "", "state of the bandage on the segment, the gravest of its slices", &Row::status},
@@ -87,8 +101,8 @@ constexpr std::array status_words{"contact",   "slack",          "lifted",   "ex
                                   "pulled_in", "no_equilibrium", "diverged", "invalid"};
 static_assert(status_words.size() == model::status_count);
 
-constexpr std::array fidelity_words{"rigid", "slice", "sliding", "axisym"};
-static_assert(fidelity_words.size() == static_cast<std::size_t>(model::Fidelity::axisym) + 1);
+constexpr std::array fidelity_words{"rigid", "slice", "sliding", "axisym", "first_order"};
+static_assert(fidelity_words.size() == static_cast<std::size_t>(model::Fidelity::first_order) + 1);
 
 std::int8_t stored(model::Status value) {
   return static_cast<std::int8_t>(value);

@@ -5,10 +5,13 @@
 #include <array>
 #include <cmath>
 
+#include "gaiter/physics/segment_forecast.hpp"
+
 namespace gaiter::physics {
 
-double height_error(const Quadrature& gauss, std::span<const double> pressure) {
+double height_error(const Quadrature& gauss, std::span<const double> pressure, double taper) {
   constexpr int coefficients = 3;  // the last ones tell
+  constexpr double caution = 2;
   const int count = static_cast<int>(gauss.nodes.size());
   std::array<double, coefficients> last{};
   double mean = 0;
@@ -25,11 +28,16 @@ double height_error(const Quadrature& gauss, std::span<const double> pressure) {
     }
   }
   if (!(mean > 0)) return 0;
-  // The slowest fall that any of them shows, for one alone may be small by chance.
+  // Upper bound where the pressure is smooth: the slowest fall that any of them shows.
+  constexpr double rough = 0.3;
   double fall = 0;
   for (int place = 0; place < coefficients; ++place)
     fall = std::max(fall, std::pow(std::fabs(last[place]) / mean, 1.0 / (count - coefficients + place)));
-  return std::min(1.0, std::pow(fall, 2 * count));
+  const double bound = std::fabs(taper) < rough ? std::pow(fall, 2 * count) : 1.0;
+  // Rounding fills up what is smaller.
+  constexpr double rounding = 1e-15;
+  for (double& coefficient : last) coefficient = std::max(std::fabs(coefficient), rounding * mean);
+  return std::min(bound, caution * gauss_tail(last, count - 1, std::fabs(taper), count) / mean);
 }
 
 }  // namespace gaiter::physics

@@ -32,10 +32,9 @@ Quadrature slice_quadrature(model::SliceRule rule, int slices) {
   return midpoints;
 }
 
-double gauss_error_of_exponential(int points, double rate) {
-  // |error| = rate^(2n) (n!)^4 / ((2n+1) ((2n)!)^3) exp(rate x) at some x of the interval; the integral
-  // itself is at least exp(rate x) (1 - exp(-rate)) / rate for the largest of these.
-  if (rate == 0) return 0;
+namespace {
+
+double log_error_constant(int points) {
   // A sweep asks for every design: the logarithms of the factorials are kept.
   constexpr int most_kept = 128;
   const auto log_factorials = [](double n) {
@@ -46,8 +45,20 @@ double gauss_error_of_exponential(int points, double rate) {
     for (int n = 0; n < most_kept; ++n) values[n] = log_factorials(n);
     return values;
   }();
-  const double n = points;
-  const double log_error = 2 * n * std::log(rate) + (points < most_kept ? kept[points] : log_factorials(n));
+  return points < most_kept ? kept[points] : log_factorials(points);
+}
+
+}  // namespace
+
+double gauss_error_constant(int points) {
+  return std::exp(log_error_constant(points));
+}
+
+double gauss_error_of_exponential(int points, double rate) {
+  // |error| = rate^(2n) (n!)^4 / ((2n+1) ((2n)!)^3) exp(rate x) at some x of the interval; the integral
+  // itself is at least exp(rate x) (1 - exp(-rate)) / rate for the largest of these.
+  if (rate == 0) return 0;
+  const double log_error = 2.0 * points * std::log(rate) + log_error_constant(points);
   return std::min(1.0, std::exp(log_error) * rate / -std::expm1(-rate));
 }
 

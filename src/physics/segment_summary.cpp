@@ -30,7 +30,8 @@ model::SegmentResult summarise(std::span<const SliceOutcome> slices, const Quadr
     result.pressure_actuated_area_mean = result.actuation_pressure = none;
     model::derive_changes(result);
     result.volume_rest = result.volume_actuated = result.volume_change = result.radius_actuated = none;
-    result.stretch_actual = result.electric_field_max = result.error_estimate = none;
+    result.stretch_actual = result.electric_field_max = result.discretisation_error = none;
+    result.error_estimate = result.model_error = none;
     return result;
   }
   if (result.status == model::Status::pulled_in) result.electric_field_max = none;
@@ -52,7 +53,8 @@ model::SegmentResult summarise(std::span<const SliceOutcome> slices, const Quadr
                          result.volume_initial;
   result.radius_actuated = mean([](const auto& s) { return s.radius_actuated; });
   result.stretch_actual = mean([](const auto& s) { return s.bandage_radius_rest / s.reference_radius; });
-  result.error_estimate = quadrature_error;
+  result.discretisation_error = quadrature_error;
+  model::derive_error(result);
   return result;
 }
 

@@ -87,7 +87,9 @@ model::SegmentResult summarise_sliding(const SlidingOutcome& outcome, double hei
   result.volume_rest = rest_found ? result.volume_initial - loss(rest) : none;
   result.stretch_actual =
       rest_found ? height_mean(rest, [](const auto& s) { return s.tube_radius; }) / reference_radius : none;
-  result.error_estimate = rest_found ? wall_error + sliding_error(rest) : none;
+  result.discretisation_error = rest_found ? wall_error + sliding_error(rest) : none;
+  result.model_error = none;  // ends, bending, shear of the leg
+  model::derive_error(result);
   if (!actuated_found) {
     result.actuation_pressure = result.volume_actuated = result.volume_change = result.radius_actuated = none;
     result.slip_max = result.electric_field_max = none;
@@ -102,7 +104,9 @@ model::SegmentResult summarise_sliding(const SlidingOutcome& outcome, double hei
     result.electric_field_max = std::max(result.electric_field_max, slice.electric_field);
   if (result.status == model::Status::pulled_in)
     result.electric_field_max = std::numeric_limits<double>::quiet_NaN();
-  result.error_estimate = std::max(result.error_estimate, wall_error + sliding_error(actuated));
+  result.discretisation_error =
+      std::max(result.discretisation_error, wall_error + sliding_error(actuated));
+  model::derive_error(result);
   return result;
 }
 

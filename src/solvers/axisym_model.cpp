@@ -101,7 +101,8 @@ model::SegmentResult result_of(const model::Scene& scene, std::size_t segment, c
   result.slip_max = put(std::max(rest.slip, actuated.slip) * length);
   result.electric_field_max = put(actuated.field * scene.bandage.modules[segment].voltage / length);
   result.voltage_stable = at_rest(actuated.stable_voltage * scene.bandage.modules[segment].voltage);
-  result.error_estimate = none;
+  result.error_estimate = result.discretisation_error = none;
+  result.model_error = at_rest(0);  // nothing is beyond it
   return result;
 }
 
@@ -120,7 +121,7 @@ std::vector<model::SegmentResult> solve_piece(MPI_Comm comm, const Piece& piece,
   if (!coarse.rest[0].converged || (fine.converged() && !coarse.converged())) return results;
   const auto change = [](double a, double b) { return b != 0 ? std::fabs(a / b - 1) : 0; };
   for (std::size_t k = 0; k < results.size(); ++k)
-    results[k].error_estimate =
+    results[k].discretisation_error = results[k].error_estimate =
         std::max(change(coarse.rest[k].pressure, fine.rest[k].pressure),
                  fine.converged() ? change(coarse.actuated[k].pressure, fine.actuated[k].pressure) : 0);
   return results;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "gaiter/petsc/session.hpp"
+#include "gaiter/physics/segment_forecast.hpp"
 #include "gaiter/physics/slice_kernel.hpp"
 #include "gaiter/physics/wall_resolution.hpp"
 
@@ -23,6 +24,7 @@ constexpr double wall_tolerance =
     1e-12;  // of the quadrature through the wall, where the points are chosen here
 
 double voltage_of(const SegmentTask& task) {
+  if (task.plan && !task.plan->actuated) return 0;
   return task.scene->bandage.modules[task.segment].voltage;
 }
 
@@ -48,9 +50,25 @@ const physics::Quadrature& SliceModel::wall_rule(int points) {
   return found->second;
 }
 
+// Gauss points on each piece of the height between the plan's cuts.
+const physics::Quadrature& SliceModel::cut_rule(const SlicePlan& plan) {
+  const physics::Quadrature& gauss = height_rule(model::SliceRule::gauss, plan.slice_count);
+  physics::Quadrature& rule = cut_rules_.emplace_back();
+  for (std::size_t piece = 0; piece <= plan.cuts.size(); ++piece) {
+    const double from = piece == 0 ? 0 : plan.cuts[piece - 1];
+    const double to = piece == plan.cuts.size() ? 1 : plan.cuts[piece];
+    for (std::size_t k = 0; k < gauss.nodes.size(); ++k) {
+      rule.nodes.push_back(from + (to - from) * gauss.nodes[k]);
+      rule.weights.push_back((to - from) * gauss.weights[k]);
+    }
+  }
+  return rule;
+}
+
 // The tasks' slices, set up in the memory of the batch before.
 void SliceModel::take(std::span<const SegmentTask> tasks) {
   tasks_.clear();
+  cut_rules_.clear();
   SliceShape shape;
   int most_points = 1;
   bool voltage_somewhere = false, all_newton = true;
@@ -60,17 +78,29 @@ void SliceModel::take(std::span<const SegmentTask> tasks) {
     const model::Discretisation& how = scene.discretisation;
     Task own;
     own.first = slices;
-    own.end = slices += static_cast<std::size_t>(how.slice_count);
     int points = how.wall_points;
-    if (points > 0) {
-      own.wall_error = physics::wall_error(scene, task.segment, points);
+    if (task.plan) {
+      own.pieces = static_cast<int>(task.plan->cuts.size()) + 1;
+      own.end = slices += static_cast<std::size_t>(task.plan->slice_count * own.pieces);
+      points = task.plan->wall_points;
+      own.wall_error = task.plan->wall_error;
+      own.rule = own.pieces > 1 ? &cut_rule(*task.plan)
+                                : &height_rule(model::SliceRule::gauss, task.plan->slice_count);
     } else {
+      own.end = slices += static_cast<std::size_t>(how.slice_count);
+      own.rule = &height_rule(how.slice_rule, how.slice_count);
+    }
+    if (!task.plan && points > 0) {
+      physics::SegmentForecast forecast(scene, task.segment);
+      forecast.analyse();
+      own.wall_error = forecast.wall_error(points);
+    } else if (!task.plan) {
       const physics::WallChoice choice = physics::wall_points_for(scene, task.segment, wall_tolerance);
       points = choice.points;
       own.wall_error = choice.error;
     }
-    own.rule = &height_rule(how.slice_rule, how.slice_count);
     own.wall_rule = &wall_rule(points);
+    own.wall_points = points;
     own.voltage = voltage_of(task);
     own.data_limit = scene.leg.material == model::LegMaterial::compliance
                          ? scene.leg.data_limit
@@ -159,13 +189,38 @@ void SliceModel::solve_rigid() {
   }
 }
 
+// What the slices start from, taken for the answer: no equation is solved.
+void SliceModel::solve_first_order() {
+  for (bool at_rest : {true, false}) {
+    if (!at_rest && !energised_) break;
+    system_.energise(!at_rest);
+    for (std::size_t k = 0; k < system_.packs(); ++k) {
+      Pack pressure;
+      physics::start_at_rest(system_.shape(), system_.pack(k), states_[k], pressure);
+      if (at_rest) rigid_pressure_[k] = pressure;
+      for (int i = 0; i < pack_width; ++i) states_[k].open[i] = 0;
+    }
+    record(at_rest);
+    if (at_rest) rigid_pressures();
+  }
+}
+
 std::span<const model::SegmentResult> SliceModel::solve(std::span<const SegmentTask> tasks) {
   take(tasks);
   const model::Scene* scene = tasks.empty() ? nullptr : tasks[0].scene;
-  const bool rigid = petsc::largest(comm_, scene && (scene->fidelity == model::Fidelity::rigid ||
+  const model::Fidelity asked = !scene          ? model::Fidelity::slice
+                                : tasks[0].plan ? tasks[0].plan->fidelity
+                                                : scene->fidelity;
+  const bool rigid = petsc::largest(comm_, scene && (asked == model::Fidelity::rigid ||
                                                      scene->leg.model == model::LegModel::rigid)) > 0;
+  const bool first_order = !rigid && petsc::largest(comm_, asked == model::Fidelity::first_order) > 0;
+  const model::Fidelity fidelity = rigid         ? model::Fidelity::rigid
+                                   : first_order ? model::Fidelity::first_order
+                                                 : model::Fidelity::slice;
   if (rigid) {
     solve_rigid();
+  } else if (first_order) {
+    solve_first_order();
   } else {
     prepare_solver(newton_ ? model::SliceSolver::newton : model::SliceSolver::fixed_point,
                    petsc::largest(comm_, scene ? scene->discretisation.fixed_point_tolerance : 0));
@@ -179,15 +234,20 @@ std::span<const model::SegmentResult> SliceModel::solve(std::span<const SegmentT
   results_.clear();
   for (std::size_t t = 0; t < tasks_.size(); ++t) {
     const Task& own = tasks_[t];
-    const double error = height_error(tasks[t], own, rigid) + own.wall_error;
+    const double error = height_error(tasks[t], own, fidelity) + own.wall_error;
     results_.push_back(physics::summarise(std::span(outcomes_).subspan(own.first, own.end - own.first),
                                           *own.rule, tasks[t].scene->leg.segments[tasks[t].segment].height,
                                           error));
     model::SegmentResult& result = results_.back();
-    result.fidelity = rigid ? model::Fidelity::rigid : model::Fidelity::slice;
+    result.fidelity = fidelity;
+    result.slice_count = static_cast<int>(own.end - own.first);
+    result.wall_points = own.wall_points;
     // A slice's state is that of the branch from rest; where this one ends is not looked for.
     result.voltage_stable =
         result.status < Status::pulled_in ? own.voltage : std::numeric_limits<double>::quiet_NaN();
+    if (!model::trustworthy(result.status)) continue;
+    result.model_error = model_error(tasks[t], own, fidelity);
+    model::derive_error(result);
   }
   return results_;
 }

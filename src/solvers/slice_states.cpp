@@ -2,15 +2,18 @@
 // The states that the slices of a batch pass through: at rest, under voltage, and what is found in each.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "gaiter/petsc/session.hpp"
 #include "gaiter/physics/branch.hpp"
 #include "gaiter/physics/height_error.hpp"
+#include "gaiter/physics/segment_forecast.hpp"
 #include "gaiter/physics/slice_kernel.hpp"
 #include "gaiter/solvers/slice_model.hpp"
 
 namespace gaiter::solvers {
 
+using model::Fidelity;
 using model::Status;
 using physics::Pack;
 using physics::pack_width;
@@ -20,7 +23,10 @@ using physics::SliceShape;
 
 namespace {
 
-constexpr double caution = 10;            // of an error estimated from starting values instead of solutions
+constexpr int fewest_to_tell = 6;  // slices laid by the scene whose own pressures are asked for their error
+
+constexpr double caution = 10;  // of an error estimated from starting values instead of solutions
+constexpr double largest_own_error = 1e-7;
 constexpr double smallest_error = 4e-15;  // of a sum of some slices, by rounding
 constexpr int most_check_points = 128;    // over the height, of the rule that an error estimate compares with
 // f' of the scalar equation of a slice: 1 for a bandage that does not stiffen or soften with the leg's
@@ -157,22 +163,61 @@ void SliceModel::finish_actuated() {
   }
 }
 
-// Relative error of a task's height averages. From its pressures alone, where these leave no doubt.
-double SliceModel::height_error(const SegmentTask& task, const Task& own, bool rigid) {
-  const std::size_t count = own.end - own.first;
-  if (count >= physics::fewest_for_height_error &&
-      task.scene->discretisation.slice_rule == model::SliceRule::gauss) {
-    double error = smallest_error;
-    pressures_.resize(count);
-    for (bool actuated : {false, true}) {
-      for (std::size_t k = 0; k < count; ++k) {
-        const SliceOutcome& slice = outcomes_[own.first + k];
-        pressures_[k] = actuated ? slice.pressure_actuated : slice.pressure_rest;
-      }
-      error = std::max(error, physics::height_error(*own.rule, pressures_));
-      if (own.voltage == 0) break;
+// From the pressures at the slices of the pieces that touch the leg, where these are enough to tell.
+double SliceModel::height_error_of_pieces(const SegmentTask& task, const Task& own, bool actuated) {
+  const std::size_t count = (own.end - own.first) / static_cast<std::size_t>(own.pieces);
+  const model::Segment& leg = task.scene->leg.segments[task.segment];
+  const physics::Quadrature& gauss = height_rule(model::SliceRule::gauss, static_cast<int>(count));
+  const double taper = 0.5 * (leg.upper_radius - leg.lower_radius) / leg.mean_radius();
+  double sum = 0, mean = 0;
+  pressures_.resize(count);
+  for (int piece = 0; piece < own.pieces; ++piece) {
+    const std::size_t first = own.first + static_cast<std::size_t>(piece) * count;
+    double part = 0, share = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      const SliceOutcome& slice = outcomes_[first + k];
+      pressures_[k] = actuated ? slice.pressure_actuated : slice.pressure_rest;
+      part += own.rule->weights[first - own.first + k] * pressures_[k];
+      share += own.rule->weights[first - own.first + k];
     }
-    if (error < physics::largest_height_error) return error;
+    mean += part;
+    const double rough = task.plan ? task.plan->roughness : 0;
+    sum += part * physics::height_error(gauss, pressures_, std::max(std::fabs(taper * share), rough));
+  }
+  return mean > 0 ? sum / mean : 0;
+}
+
+// What models beyond this one would change, as far as it is known.
+double SliceModel::model_error(const SegmentTask& task, const Task& own, Fidelity fidelity) {
+  physics::SegmentForecast forecast(*task.scene, task.segment);
+  forecast.want(true, own.voltage != 0);
+  const double sliding = forecast.sliding_error();
+  const bool gives_way = task.scene->leg.model != model::LegModel::rigid;
+  if (fidelity == Fidelity::slice || !gives_way) return sliding;
+  // A leg without compliance has none to correct for.
+  const bool known = task.scene->leg.material != model::LegMaterial::compliance ||
+                     task.scene->leg.segments[task.segment].compliance.b > 0;
+  if (!known) return std::numeric_limits<double>::quiet_NaN();
+  forecast.analyse();
+  return sliding + (fidelity == Fidelity::rigid ? forecast.compliance_error() : forecast.first_order_error());
+}
+
+// Relative error of a task's height averages. From its pressures alone, where these leave no doubt.
+double SliceModel::height_error(const SegmentTask& task, const Task& own, Fidelity fidelity) {
+  const bool rigid = fidelity == Fidelity::rigid;
+  if (task.plan) {
+    const std::size_t count = (own.end - own.first) / static_cast<std::size_t>(own.pieces);
+    if (count < physics::fewest_for_height_error) return task.plan->height_error;
+    const double at_rest = height_error_of_pieces(task, own, false);
+    return std::max(smallest_error,
+                    own.voltage != 0 ? std::max(at_rest, height_error_of_pieces(task, own, true)) : at_rest);
+  }
+  const std::size_t count = own.end - own.first;
+  if (count >= fewest_to_tell &&
+      task.scene->discretisation.slice_rule == model::SliceRule::gauss) {
+    double error = std::max(smallest_error, height_error_of_pieces(task, own, false));
+    if (own.voltage != 0) error = std::max(error, height_error_of_pieces(task, own, true));
+    if (error < largest_own_error) return error;
   }
   return height_error_of_start(task, own, rigid);
 }

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "gaiter/petsc/session.hpp"
+#include "gaiter/physics/segment_forecast.hpp"
 #include "gaiter/physics/sliding_summary.hpp"
 #include "gaiter/physics/wall_resolution.hpp"
 #include "gaiter/solvers/sliding_solver.hpp"
@@ -28,10 +29,12 @@ constexpr double last_stride = 1.0 / 512;
 constexpr double path_start = 0.25;  // of the rest state's: this part of the stretch beyond 1
 
 double voltage_of(const SegmentTask& task) {
+  if (task.plan && !task.plan->actuated) return 0;
   return task.scene->bandage.modules[task.segment].voltage;
 }
 
 int wall_points_of(const SegmentTask& task) {
+  if (task.plan) return task.plan->wall_points;
   const int asked = task.scene->discretisation.wall_points;
   return asked > 0 ? asked : physics::wall_points_for(*task.scene, task.segment, wall_tolerance).points;
 }
@@ -54,7 +57,8 @@ physics::SliceShape common_slice_shape(std::span<const SegmentTask> tasks) {
 physics::SlidingShape common_shape(MPI_Comm comm, std::span<const SegmentTask> tasks) {
   double slices = 0;
   for (const SegmentTask& task : tasks)
-    slices = std::max<double>(slices, task.scene->discretisation.sliding_count);
+    slices = std::max<double>(slices,
+                              task.plan ? task.plan->slice_count : task.scene->discretisation.sliding_count);
   return {physics::sliding_elements(static_cast<int>(petsc::largest(comm, slices))), false};
 }
 
@@ -317,9 +321,18 @@ std::vector<model::SegmentResult> SlidingStudy::run() {
     const double reference =
         module.length > 0 ? module.length / (2 * M_PI) : leg.mean_radius() / module.stretch;
     const int points = static_cast<int>(wall_rules_[t].nodes.size());
+    double wall_error = 0;
+    if (scene.discretisation.wall_points > 0 || tasks_[t].plan) {
+      physics::SegmentForecast forecast(scene, tasks_[t].segment);
+      forecast.analyse();
+      wall_error = forecast.wall_error(points);
+    } else {
+      wall_error = physics::wall_error(scene, tasks_[t].segment, points);
+    }
     results.push_back(physics::summarise_sliding(outcomes_[t], leg.height, leg.lower_radius, leg.upper_radius,
-                                                 reference,
-                                                 physics::wall_error(scene, tasks_[t].segment, points)));
+                                                 reference, wall_error));
+    results.back().slice_count = system_.shape().slices();
+    results.back().wall_points = points;
   }
   return results;
 }

@@ -6,6 +6,7 @@
 #include "gaiter/solvers/axisym_model.hpp"
 #include "gaiter/solvers/sliding_model.hpp"
 #include "gaiter/studies/scene_checks.hpp"
+#include "gaiter/studies/solve.hpp"
 
 namespace gaiter::studies {
 
@@ -17,8 +18,8 @@ constexpr std::size_t segments_in_batch = 256;  // sliding
 // Designs that go into one batch.
 std::size_t batch_designs(const model::Scene& scene) {
   const std::size_t segments = scene.leg.segments.size();
-  if (scene.fidelity == model::Fidelity::axisym) return 1;
-  if (scene.fidelity == model::Fidelity::sliding)
+  if (may_take_axisym(scene)) return 1;
+  if (scene.fidelity == model::Fidelity::sliding || scene.fidelity == model::Fidelity::automatic)
     return std::max<std::size_t>(1, segments_in_batch / segments);
   const std::size_t slices = segments * static_cast<std::size_t>(scene.discretisation.slice_count);
   return std::max<std::size_t>(1, slices_in_batch / slices);
@@ -38,7 +39,11 @@ double equilibria_of(const solvers::SegmentTask& task) {
 }  // namespace
 
 ChunkSolver::ChunkSolver(MPI_Comm group, const model::Scene& scene, const Designs& designs)
-    : group_(group), designs_(designs), scenes_(batch_designs(scene), scene), slices_(MPI_COMM_SELF) {
+    : group_(group),
+      designs_(designs),
+      scenes_(batch_designs(scene), scene),
+      slices_(MPI_COMM_SELF),
+      auto_(group) {
   sound_.resize(scenes_.size());
   chunk_.swept_values.resize(designs.axes().size());
 }
@@ -74,7 +79,9 @@ void ChunkSolver::solve_batch(std::size_t first, std::size_t designs) {
   std::vector<model::SegmentResult> others;
   std::span<const model::SegmentResult> results;
   const model::Fidelity fidelity = scenes_[0].fidelity;
-  if (fidelity == model::Fidelity::axisym || fidelity == model::Fidelity::sliding) {
+  if (fidelity == model::Fidelity::automatic) {
+    results = auto_.solve(tasks_);
+  } else if (fidelity == model::Fidelity::axisym || fidelity == model::Fidelity::sliding) {
     if (!tasks_.empty())
       others = fidelity == model::Fidelity::axisym ? solvers::solve_axisym(group_, tasks_)
                                                    : solvers::solve_sliding(MPI_COMM_SELF, tasks_);
@@ -89,7 +96,10 @@ void ChunkSolver::solve_batch(std::size_t first, std::size_t designs) {
     bool failed = false;
     for (std::size_t s = 0; s < segments; ++s) {
       const model::SegmentResult result =
-          sound_[k] ? results[next++] : model::without_numbers(model::Status::invalid, fidelity);
+          sound_[k] ? results[next++]
+                    : model::without_numbers(model::Status::invalid, fidelity == model::Fidelity::automatic
+                                                                         ? model::Fidelity::slice
+                                                                         : fidelity);
       failed = failed || !model::trustworthy(result.status);
       chunk_.rows[(first + k) * segments + s] = result;
     }

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <iterator>
 #include <stdexcept>
-
 namespace gaiter::studies {
 
 namespace {
@@ -23,6 +22,18 @@ constexpr Range positive_or_infinite{.low = 0, .low_open = true};
 
 std::vector<Option> make_table() {
   return {
+      {.name = "accuracy",
+       .components = {{.range = {.low = 1e-8, .high = 0.5}}},
+       .default_text = "1e-3",
+       .doc = "Relative error of each of -outputs that -fidelity auto keeps below, by its estimates.",
+       .sweepable = true,
+       .set = [](Scene& s, std::size_t, Values v) { s.goal.accuracy = v[0]; }},
+      {.name = "auto_up_to",
+       .kind = Kind::choice,
+       .choices = {"slice", "sliding", "axisym"},
+       .default_text = "axisym",
+       .doc = "Finest model that -fidelity auto may take, and the one that its errors refer to.",
+       .set = [](Scene& s, std::size_t, Values v) { s.goal.up_to = model::Fidelity(1 + int(v[0])); }},
       {.name = "axisym_electrostatics",
        .kind = Kind::choice,
        .choices = {"radial", "field", "off"},
@@ -75,8 +86,7 @@ std::vector<Option> make_table() {
        .format = "a file name that ends in .hdf or .vtkhdf",
        .example = "view.hdf",
        .doc = "Fields of the finite elements for ParaView (VTKHDF), in view_rest.hdf and view_actuated.hdf; "
-              "with "
-              "several segments in view_<s>_rest.hdf and view_<s>_actuated.hdf.",
+              "with several segments in view_<s>_rest.hdf and view_<s>_actuated.hdf.",
        .commands = {Command::solve}},
       {.name = "bandage_<s>_length",
        .scope = Scope::one_segment,
@@ -177,11 +187,14 @@ std::vector<Option> make_table() {
                  Values v) { s.contact_axial = static_cast<model::ContactAxial>(static_cast<int>(v[0])); }},
       {.name = "fidelity",
        .kind = Kind::choice,
-       .choices = {"rigid", "slice", "sliding", "axisym"},
+       .choices = {"rigid", "slice", "sliding", "axisym", "first_order", "auto"},
        .default_text = "slice",
-       .doc = "How much is modelled: a leg that does not give way, slices that each find their equilibrium, "
-              "slices "
-              "coupled by a tube that slides along the leg, or both bodies by finite elements in contact.",
+       .doc =
+           "How much is modelled: a leg that does not give way, or does so to first order; slices that each "
+           "find their equilibrium, "
+           "slices "
+           "coupled by a tube that slides along the leg, or both bodies by finite elements in contact; auto "
+           "takes for each segment the cheapest of them that reaches -accuracy.",
        .set = [](Scene& s, std::size_t,
                  Values v) { s.fidelity = static_cast<model::Fidelity>(static_cast<int>(v[0])); }},
       {.name = "leg_<s>_compliance",

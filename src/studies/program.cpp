@@ -19,6 +19,7 @@
 #include "gaiter/studies/axisym_view.hpp"
 #include "gaiter/studies/help.hpp"
 #include "gaiter/studies/paper_comparison.hpp"
+#include "gaiter/studies/plan_table.hpp"
 #include "gaiter/studies/report.hpp"
 #include "gaiter/studies/result_table.hpp"
 #include "gaiter/studies/scene_checks.hpp"
@@ -70,7 +71,7 @@ void print_tables(const Request& request, const Designs& designs) {
   const std::size_t segments = request.scene.leg.segments.size();
   std::vector<model::SegmentResult> rows(
       static_cast<std::size_t>(designs.size()) * segments,
-      model::without_numbers(model::Status::invalid, request.scene.fidelity));
+      model::without_numbers(model::Status::invalid, model::Fidelity::slice));
   for (const archive::Column& column : archive::columns()) put_column(column, archive, rows);
   model::Scene scene = request.scene;
   std::vector<double> values(designs.axes().size());
@@ -190,6 +191,10 @@ int run_program(petsc::Session& session, const CommandLine& line) {
     if (printing)
       fmt::print("{}# {} designs of {} segments\n", request.text, designs.size(),
                  request.scene.leg.segments.size());
+    return success;
+  }
+  if (request.plan) {
+    if (printing) fmt::print("{}", plan_text(request, designs));
     return success;
   }
   const int code = command == Command::sweep ? sweep(request, designs, line) : solve(request, line);

@@ -66,10 +66,10 @@ std::string result_table(const model::Scene& scene, std::span<const model::Segme
       notes +=
           fmt::format("{}: the electric field, {:.1f} kV/mm, exceeds the breakdown field, {:.1f} kV/mm\n",
                       segment.name, r.electric_field_max * 1e-6, scene.bandage.breakdown_field * 1e-6);
-    if (r.error_estimate > loud_error)
+    if (r.discretisation_error > loud_error && scene.fidelity != model::Fidelity::automatic)
       notes += fmt::format(
           "{}: estimated relative error of the pressure {:.1e}; more -slice_count or -wall_points\n",
-          segment.name, r.error_estimate);
+          segment.name, r.discretisation_error);
   }
   for (std::size_t status = 1; status < seen.size(); ++status)
     if (seen[status])

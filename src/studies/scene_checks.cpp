@@ -8,6 +8,7 @@
 #include "gaiter/base/error.hpp"
 #include "gaiter/studies/axisym_checks.hpp"
 #include "gaiter/studies/option_values.hpp"
+#include "gaiter/studies/solve.hpp"
 
 namespace gaiter::studies {
 
@@ -76,7 +77,7 @@ void check_scene(const model::Scene& scene) {
                     format_values(option("bandage_ogden_mu"), mu),
                     format_values(option("bandage_ogden_alpha"), alpha), 0.5 * twice_modulus));
   }
-  if (scene.fidelity == model::Fidelity::axisym) check_axisym(scene);
+  if (may_take_axisym(scene)) check_axisym(scene);
 }
 
 }  // namespace gaiter::studies

@@ -23,7 +23,7 @@ constexpr std::string_view segment_mark = "<s>";
 // Whether to stop first and what to tell meanwhile is not part of what is computed. Nor is where the archive
 // goes, which is a text.
 bool of_the_run(std::string_view name) {
-  return name == "dry_run" || name == "progress";
+  return name == "dry_run" || name == "plan" || name == "progress";
 }
 
 std::string names_of(std::span<const model::Segment> segments) {
@@ -130,6 +130,8 @@ void Parser::read_settings() {
       std::string& path = name == "output" ? request_.output : request_.axisym_view;
       path = base::trim(given.text);
       if (path.empty()) throw value_error(entry, given.name, given.text, "a value is missing");
+    } else if (name == "outputs") {
+      read_outputs(given);
     } else if (name == "output_variables") {
       read_output_variables(given);
     } else if (std::ranges::find(entry.commands, Command::report) != entry.commands.end()) {
@@ -151,6 +153,21 @@ void Parser::read_settings() {
     }
     throw InputError(
         "sweep: nothing to sweep; give values for an option, e.g. -sweep_bandage_stretch 1.4,1.6");
+  }
+}
+
+void Parser::read_outputs(const Given& given) {
+  model::Goal& goal = request_.scene.goal;
+  const std::vector<std::pair<std::string, bool*>> outputs{{"pressure_rest", &goal.pressure_rest},
+                                                           {"pressure_actuated", &goal.pressure_actuated},
+                                                           {"actuation_drop", &goal.actuation_drop},
+                                                           {"volume_change", &goal.volume_change}};
+  for (const auto& [name, wanted] : outputs) *wanted = false;
+  for (const std::string_view item : base::split(given.text)) {
+    const auto found = std::ranges::find(outputs, base::trim(item), [](const auto& o) { return o.first; });
+    if (found == outputs.end()) throw value_error(option("outputs"), given.name, given.text);
+    *found->second = true;
+    request_.outputs.push_back(found->first);
   }
 }
 
@@ -239,6 +256,7 @@ void Parser::apply() {
     const std::vector<double> values =
         setting ? setting->values : parse_values(entry, entry.name, entry.default_text);
     if (entry.name == "dry_run") request_.dry_run = values[0] != 0;
+    if (entry.name == "plan") request_.plan = values[0] != 0;
     if (entry.name == "progress") request_.progress = static_cast<Progress>(static_cast<int>(values[0]));
     if (entry.name == "comparison")
       request_.comparison = static_cast<Comparison>(static_cast<int>(values[0]));
@@ -266,6 +284,7 @@ std::string Parser::resolved_text() const {
     lines[std::string(entry.name)] =
         format_values(entry, parse_values(entry, entry.name, entry.default_text));
   }
+  if (!request_.outputs.empty()) lines["outputs"] = fmt::format("[{}]", fmt::join(request_.outputs, ", "));
   if (!request_.output_variables.empty())
     lines["output_variables"] = fmt::format("[{}]", fmt::join(request_.output_variables, ", "));
   for (const auto& [name, setting] : settings_) {

@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include "gaiter/petsc/session.hpp"
+#include "gaiter/solvers/auto_model.hpp"
 #include "gaiter/solvers/axisym_model.hpp"
 #include "gaiter/solvers/slice_model.hpp"
 #include "gaiter/solvers/sliding_model.hpp"
@@ -11,9 +12,14 @@
 
 namespace gaiter::studies {
 
+bool may_take_axisym(const model::Scene& scene) {
+  return scene.fidelity == model::Fidelity::axisym ||
+         (scene.fidelity == model::Fidelity::automatic && scene.goal.up_to == model::Fidelity::axisym);
+}
+
 Solution solve_scene(MPI_Comm comm, const model::Scene& scene, const solvers::AxisymObserver& observer) {
   const bool axisym = scene.fidelity == model::Fidelity::axisym;
-  const RankGroups groups(comm, axisym ? scene.axisym.ranks_per_case : 1);
+  const RankGroups groups(comm, may_take_axisym(scene) ? scene.axisym.ranks_per_case : 1);
   const std::size_t segments = scene.leg.segments.size();
   // What is solved as a whole stays together: a segment, or all of a leg.
   const std::size_t whole = axisym && scene.axisym.scope == model::AxisymScope::leg ? segments : 1;
@@ -28,7 +34,11 @@ Solution solve_scene(MPI_Comm comm, const model::Scene& scene, const solvers::Ax
   Solution solution{first, {}, 0};
   if (axisym)
     solution.rows = solvers::solve_axisym(groups.group, tasks, observer);
-  else if (scene.fidelity == model::Fidelity::sliding)
+  else if (scene.fidelity == model::Fidelity::automatic) {
+    solvers::AutoModel model(groups.group);
+    const auto rows = model.solve(tasks);
+    solution.rows.assign(rows.begin(), rows.end());
+  } else if (scene.fidelity == model::Fidelity::sliding)
     solution.rows = solvers::solve_sliding(comm, tasks);
   else
     solution.rows = solvers::solve_segments(comm, tasks);

@@ -16,6 +16,7 @@
 #include "gaiter/solvers/slice_solver.hpp"
 #include "gaiter/solvers/sliding_solver.hpp"
 #include "gaiter/studies/option_names.hpp"
+#include "gaiter/studies/solve.hpp"
 
 namespace gaiter::studies {
 
@@ -86,7 +87,7 @@ void check_tolerances(SNES snes, const std::string& prefix, const ForeignOptions
 void try_solvers(const model::Scene& scene, const ForeignOptions& foreign) {
   const solvers::SliceSolver slices(PETSC_COMM_WORLD, 1, scene.discretisation.slice_solver, 1);
   check_tolerances(slices.snes(), "slice_", foreign);
-  if (scene.fidelity == model::Fidelity::axisym) {
+  if (may_take_axisym(scene)) {
     // On as many ranks as share a mesh.
     const solvers::SegmentTask task{&scene, 0};
     const int rank = petsc::rank(PETSC_COMM_WORLD);
@@ -100,7 +101,7 @@ void try_solvers(const model::Scene& scene, const ForeignOptions& foreign) {
     }
     MPI_Comm_free(&group);
   }
-  if (scene.fidelity != model::Fidelity::sliding) return;
+  if (scene.fidelity != model::Fidelity::sliding && scene.fidelity != model::Fidelity::automatic) return;
   const solvers::SlidingSolver sliding(PETSC_COMM_WORLD, 1, 3);
   check_tolerances(sliding.snes(), "sliding_", foreign);
 }

@@ -13,6 +13,7 @@
 #include "gaiter/studies/chunk_solver.hpp"
 #include "gaiter/studies/progress.hpp"
 #include "gaiter/studies/rank_groups.hpp"
+#include "gaiter/studies/solve.hpp"
 #include "gaiter/studies/stop_signal.hpp"
 #include "gaiter/studies/work_queue.hpp"
 
@@ -78,8 +79,7 @@ SweepRun::SweepRun(MPI_Comm comm, const Request& request, const Designs& designs
                    archive::SweepArchive& archive)
     : comm_(comm),
       archive_(archive),
-      groups_(comm,
-              request.scene.fidelity == model::Fidelity::axisym ? request.scene.axisym.ranks_per_case : 1),
+      groups_(comm, may_take_axisym(request.scene) ? request.scene.axisym.ranks_per_case : 1),
       solver_(groups_.group, request.scene, designs) {
   for (std::size_t chunk = 0; chunk < archive.chunks(); ++chunk) {
     if (!archive.finished(chunk)) {
@@ -178,9 +178,10 @@ std::size_t chunk_designs(const model::Scene& scene, std::int64_t designs) {
   struct Size {
     std::int64_t least, most;
   };
-  const Size size = scene.fidelity == model::Fidelity::axisym    ? Size{1, 1}
-                    : scene.fidelity == model::Fidelity::sliding ? Size{8, 128}
-                                                                 : Size{256, 4096};
+  const bool sliding =
+      scene.fidelity == model::Fidelity::sliding ||
+      (scene.fidelity == model::Fidelity::automatic && scene.goal.up_to == model::Fidelity::sliding);
+  const Size size = may_take_axisym(scene) ? Size{1, 1} : sliding ? Size{8, 128} : Size{256, 4096};
   const std::int64_t some = std::clamp((designs + 15) / 16, size.least, size.most);
   return static_cast<std::size_t>(std::max(some, (designs + most_chunks - 1) / most_chunks));
 }

@@ -6,7 +6,8 @@
 
 namespace gaiter::model {
 
-enum class Fidelity { rigid, slice, sliding, axisym };
+// In the order of the archive's numbers; results are never `automatic`, which chooses one of the others.
+enum class Fidelity { rigid, slice, sliding, axisym, first_order, automatic };
 enum class SliceRule { gauss, midpoint };
 enum class SliceSolver { newton, fixed_point };
 enum class ContactAxial { free, held };  // along the leg: lubricated, or as laid on
@@ -37,6 +38,15 @@ struct AxisymChoice {
   int ranks_per_case = 1;  // that share one mesh
 };
 
+// What -fidelity auto is to reach.
+struct Goal {
+  double accuracy = 1e-3;             // relative, of each wanted output [1]
+  Fidelity up_to = Fidelity::axisym;  // the finest model that may be taken
+  bool pressure_rest = true, pressure_actuated = true, actuation_drop = false, volume_change = false;
+
+  bool actuated() const { return pressure_actuated || actuation_drop || volume_change; }
+};
+
 // Everything a solve needs: leg, bandage, loads (the modules' voltages) and how to solve.
 struct Scene {
   Leg leg;
@@ -45,6 +55,7 @@ struct Scene {
   ContactAxial contact_axial = ContactAxial::free;  // sliding and axisym
   Discretisation discretisation;
   AxisymChoice axisym;
+  Goal goal;
 };
 
 }  // namespace gaiter::model

@@ -7,15 +7,14 @@
 
 namespace gaiter::physics {
 
-// Fewest Gauss points over the height from which height_error can tell, and the largest result that is worth
-// having: it is an upper bound that need not be sharp.
-constexpr int fewest_for_height_error = 6;
-constexpr double largest_height_error = 1e-7;
+// Fewest Gauss points over the height from which height_error can tell.
+constexpr int fewest_for_height_error = 4;
 
-// Bound of the relative error of the average of a pressure by a Gauss rule over the height, from the
-// pressures at its n nodes alone: the fall of their Legendre coefficients carried on to the degree 2n, which
-// the rule is the first to get wrong. Costs nothing beside an evaluation. Tested in
-// tests/slice_reference.cpp.
-double height_error(const Quadrature& gauss, std::span<const double> pressure);
+// Relative error of the average of a pressure by a Gauss rule over the height, from the pressures at its n
+// nodes alone: the fall of their Legendre coefficients carried on to the degree 2n, which the rule is the
+// first to get wrong (gauss_tail). `taper`: half the difference of the segment's end radii over their mean,
+// which says how near the pole r = 0 is. Costs nothing beside an evaluation. Tested in
+// tests/error_estimates.cpp.
+double height_error(const Quadrature& gauss, std::span<const double> pressure, double taper);
 
 }  // namespace gaiter::physics

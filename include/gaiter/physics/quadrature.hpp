@@ -24,4 +24,7 @@ Quadrature slice_quadrature(model::SliceRule rule, int slices);
 // wall.
 double gauss_error_of_exponential(int points, double rate);
 
+// (n!)^4 / ((2n+1) ((2n)!)^3): times the derivative of order 2n somewhere in (0, 1), the rule's error.
+double gauss_error_constant(int points);
+
 }  // namespace gaiter::physics

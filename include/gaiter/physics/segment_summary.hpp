@@ -30,7 +30,7 @@ struct SliceOutcome {
 
 // Segment result from its slices at the nodes of `rule` over the height. All numbers but the initial volume
 // and the rigid pressures are NaN where a slice has no trustworthy result, the field also where one is pulled
-// in. `quadrature_error` becomes the error estimate.
+// in. `quadrature_error` becomes the discretisation error.
 model::SegmentResult summarise(std::span<const SliceOutcome> slices, const Quadrature& rule, double height,
                                double quadrature_error);
 

@@ -3,6 +3,7 @@
 
 #include <mpi.h>
 
+#include <deque>
 #include <map>
 #include <memory>
 #include <span>
@@ -15,13 +16,29 @@
 
 namespace gaiter::solvers {
 
+// How the slices of one segment are laid, where its scene does not say: see auto_model.hpp.
+struct SlicePlan {
+  model::Fidelity fidelity = model::Fidelity::slice;
+  int slice_count = 6;  // Gauss points, in each piece between cuts
+  int wall_points = 3;
+  std::vector<double> cuts;  // heights in (0, 1), ascending, where the bandage leaves the leg
+  double height_error = 0;   // predicted, relative
+  double roughness = 0;  // 0 to 1: how little the leg's law lets the pressure's Legendre coefficients fall
+  double wall_error = 0;
+  double model_error = 0;
+  double cost = 0;       // predicted [s]
+  bool actuated = true;  // false: the state under voltage is not wanted
+};
+
 // One segment of one design.
 struct SegmentTask {
   const model::Scene* scene = nullptr;
   std::size_t segment = 0;
+  const SlicePlan* plan = nullptr;  // null: as the scene says
 };
 
-// The slice model, or with Fidelity::rigid the rigid leg: rest and actuated states of many segments, each as
+// The slice model, or with Fidelity::rigid the rigid leg, or with Fidelity::first_order the rigid leg's
+// pressures corrected to first order for its giving way: rest and actuated states of many segments, each as
 // one SNES over all slices. Takes batch after batch; the SNES and all memory are made once and used again.
 class SliceModel {
  public:
@@ -31,8 +48,8 @@ class SliceModel {
 
   // All tasks of all ranks: every rank gives its own, none too, and gets their results in the same order,
   // good until the next call. They do not depend on how tasks are spread over ranks or batches. All scenes of
-  // a call have the same fidelity, leg material, slice rule, solver and number of Ogden terms; anything else
-  // may differ. @note Collective.
+  // a call have the same fidelity (the plan's, where there is one), leg material, slice rule, solver and
+  // number of Ogden terms; anything else may differ. @note Collective.
   std::span<const model::SegmentResult> solve(std::span<const SegmentTask> tasks);
 
  private:
@@ -41,7 +58,8 @@ class SliceModel {
     std::size_t first = 0, end = 0;                  // its slices
     const physics::Quadrature* rule = nullptr;       // over the height
     const physics::Quadrature* wall_rule = nullptr;  // through the wall
-    double wall_error = 0, voltage = 0;
+    double wall_error = 0, model_error = 0, voltage = 0;
+    int wall_points = 0, pieces = 1;
     double data_limit = 0;  // pressure beyond which results are extrapolated [Pa]
     bool stiffens = false;  // one equilibrium at rest, whatever the pressure
   };
@@ -50,14 +68,18 @@ class SliceModel {
   void prepare_solver(model::SliceSolver algorithm, double tolerance);
   void rigid_pressures();
   void solve_rigid();
+  void solve_first_order();
   void rest();
   void actuate();
   void solve_doubtful(bool at_rest);
   void record(bool at_rest);
   void float_free(std::size_t slice);
   void finish_actuated();
-  double height_error(const SegmentTask& task, const Task& own, bool rigid);
+  double height_error(const SegmentTask& task, const Task& own, model::Fidelity fidelity);
+  double height_error_of_pieces(const SegmentTask& task, const Task& own, bool actuated);
   double height_error_of_start(const SegmentTask& task, const Task& own, bool rigid);
+  double model_error(const SegmentTask& task, const Task& own, model::Fidelity fidelity);
+  const physics::Quadrature& cut_rule(const SlicePlan& plan);
   const physics::Quadrature& height_rule(model::SliceRule rule, int count);
   const physics::Quadrature& wall_rule(int points);
   template <typename Action>
@@ -66,6 +88,7 @@ class SliceModel {
   MPI_Comm comm_;
   std::map<std::pair<model::SliceRule, int>, physics::Quadrature> height_rules_;
   std::map<int, physics::Quadrature> wall_rules_;
+  std::deque<physics::Quadrature> cut_rules_;  // of the batch's tasks
   std::unique_ptr<SliceSolver> solver_;
   model::SliceSolver algorithm_ = model::SliceSolver::newton;  // of the solver
   double fixed_point_tolerance_ = 0;                           // likewise

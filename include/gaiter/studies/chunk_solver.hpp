@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "gaiter/model/result.hpp"
-#include "gaiter/solvers/slice_model.hpp"
+#include "gaiter/solvers/auto_model.hpp"
 #include "gaiter/studies/designs.hpp"
 
 namespace gaiter::studies {
@@ -41,6 +41,7 @@ class ChunkSolver {
   std::vector<bool> sound_;           // of each of them: it can be solved
   std::vector<solvers::SegmentTask> tasks_;
   solvers::SliceModel slices_;
+  solvers::AutoModel auto_;
   SolvedChunk chunk_;
 };
 

@@ -46,6 +46,7 @@ class Parser {
 
   void read_segments();
   void read_settings();
+  void read_outputs(const Given& given);
   void read_output_variables(const Given& given);
   void read_axis(const Given& given);
   std::optional<Match> match(std::string_view lower_name, const Given& given) const;

@@ -18,14 +18,16 @@ struct Request {
   std::string output;                         // file name of the archive
   std::vector<std::string> output_variables;  // of the results, in the schema's order; empty: all
   std::string axisym_view;  // file name from which those of the finite element fields are made; empty: none
+  std::vector<std::string> outputs;  // as given, for -fidelity auto; empty: its default
   bool dry_run = false;
+  bool plan = false;
   Comparison comparison = Comparison::none;
   Progress progress = Progress::automatic;
   std::vector<SweepAxis> axes;  // sorted by name; empty for solve
   Sampling sampling;
   std::vector<std::string> unknown;  // given, but not ours: PETSc's, or misspelt
-  std::string text;  // YAML that, read as -options_file, gives this request again; without output, dry_run
-                     // and progress
+  std::string text;  // YAML that, read as -options_file, gives this request again; without output, dry_run,
+                     // plan and progress
 };
 
 // Reads the options given, name without dash -> text. Throws InputError; unknown names alone are returned,

@@ -17,6 +17,9 @@ struct Solution {
   double seconds = 0;                      // the whole solve took
 };
 
+// Whether finite elements may be needed.
+bool may_take_axisym(const model::Scene& scene);
+
 // Solves a scene at its fidelity, all ranks together. The observer is for finite elements: see solve_axisym.
 // @note Collective.
 Solution solve_scene(MPI_Comm comm, const model::Scene& scene, const solvers::AxisymObserver& observer = {});

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: BSD-2-Clause
+// Does -fidelity auto keep what it promises, and at what cost? Over Sobol scenes (sobol_scenes.hpp) and for
+// tolerances 1e-1 to 1e-6, up to the slice model, whose full resolution is the truth: share of scenes whose
+// true error (the larger one of the pressures at rest and under voltage) is below the tolerance; cost,
+// planning and repeated solves included, over that of the cheapest rung that would have done, found by
+// hindsight among rigid, first order and slices with 1 to 64 points over the height and 1 to 12 through the
+// wall; measured seconds of both; and how the true error compares with the estimated one. Costs are those of
+// plan_cost, whose fit to measured times is printed first. Usage: auto_study [-scenes 2000]
+#include <petscsys.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <map>
+
+#include "gaiter/petsc/check.hpp"
+#include "gaiter/petsc/session.hpp"
+#include "gaiter/physics/segment_forecast.hpp"
+#include "gaiter/solvers/auto_model.hpp"
+#include "sobol_scenes.hpp"
+
+namespace {
+
+using namespace gaiter;
+using model::Fidelity;
+using solvers::SegmentTask;
+using solvers::SlicePlan;
+
+double error_of(const model::SegmentResult& found, const model::SegmentResult& truth) {
+  const auto relative = [](double a, double b) { return b > 0 ? std::fabs(a / b - 1) : std::fabs(a); };
+  return std::max(relative(found.pressure_rest, truth.pressure_rest),
+                  relative(found.pressure_actuated, truth.pressure_actuated));
+}
+
+double quantile(std::vector<double> values, double part) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  return values[std::min(values.size() - 1,
+                         static_cast<std::size_t>(part * static_cast<double>(values.size())))];
+}
+
+std::vector<model::SegmentResult> solve(const std::vector<model::Scene>& scenes,
+                                        const std::vector<SlicePlan>& plans, double* seconds = nullptr) {
+  static solvers::SliceModel model(PETSC_COMM_SELF);
+  std::vector<model::SegmentResult> results(scenes.size());
+  std::map<Fidelity, std::vector<std::size_t>> groups;
+  for (std::size_t i = 0; i < scenes.size(); ++i) groups[plans[i].fidelity].push_back(i);
+  const double start = MPI_Wtime();
+  for (const auto& [fidelity, chosen] : groups) {
+    std::vector<SegmentTask> tasks;
+    for (const std::size_t i : chosen) tasks.push_back({&scenes[i], 0, &plans[i]});
+    const auto found = model.solve(tasks);
+    for (std::size_t k = 0; k < chosen.size(); ++k) results[chosen[k]] = found[k];
+  }
+  if (seconds) *seconds = MPI_Wtime() - start;
+  return results;
+}
+
+struct Rung {
+  SlicePlan plan;
+  std::vector<double> error, cost;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  petsc::Session session(std::vector<std::string>(argv + 1, argv + argc));
+  PetscInt count = 2000;
+  petsc::check(PetscOptionsGetInt(nullptr, nullptr, "-scenes", &count, nullptr));
+  const std::vector<model::Scene> scenes = sobol::scenes(static_cast<int>(count));
+  const std::size_t size = scenes.size();
+
+  std::vector<SlicePlan> exact(size);
+  for (std::size_t i = 0; i < size; ++i) {
+    physics::SegmentForecast forecast(scenes[i], 0);
+    forecast.analyse();
+    exact[i] = {Fidelity::slice, 64, 24, forecast.cuts()};
+  }
+  const auto truth = solve(scenes, exact);
+  std::vector<bool> counts(size);
+  std::map<int, int> statuses;
+  for (std::size_t i = 0; i < size; ++i) {
+    counts[i] = model::trustworthy(truth[i].status) && truth[i].pressure_rest > 0;
+    ++statuses[static_cast<int>(truth[i].status)];
+  }
+  std::printf("%zu scenes; statuses of the truth:", size);
+  for (const auto& [status, number] : statuses) std::printf(" %d: %d", status, number);
+  std::printf("\n\nmeasured over predicted time of a rung\n");
+
+  std::vector<Rung> rungs;
+  for (Fidelity fidelity : {Fidelity::rigid, Fidelity::first_order, Fidelity::slice})
+    for (int n : {1, 2, 3, 4, 5, 6, 8, 12, 16, 24, 32, 64})
+      for (int q : {1, 2, 3, 4, 6, 8, 12}) {
+        Rung rung{{fidelity, n, q, {}}, {}, {}};
+        double seconds = 0, predicted = 0;
+        std::vector<SlicePlan> plans(size, rung.plan);
+        for (std::size_t i = 0; i < size; ++i) plans[i].cuts = n >= 4 ? exact[i].cuts : std::vector<double>{};
+        const auto found = solve(scenes, plans, &seconds);
+        for (std::size_t i = 0; i < size; ++i) {
+          rung.error.push_back(error_of(found[i], truth[i]));
+          rung.cost.push_back(solvers::plan_cost(scenes[i], 0, plans[i]));
+          predicted += rung.cost.back();
+        }
+        if ((n == 1 || n == 4 || n == 16) && (q == 1 || q == 4))
+          std::printf("  %-11s %3d x %2d  %6.2f us, %5.2f of predicted\n",
+                      fidelity == Fidelity::rigid   ? "rigid"
+                      : fidelity == Fidelity::slice ? "slice"
+                                                    : "first order",
+                      n, q, 1e6 * seconds / static_cast<double>(size), seconds / predicted);
+        rungs.push_back(std::move(rung));
+      }
+
+  std::printf("\n%8s %9s %9s %9s %8s %8s %9s %9s   %s\n", "TOL", "share", "worst", "cost 50%", "95 %", "time",
+              "plan us", "solve us", "rungs: rigid, first order, slice");
+  constexpr std::array<double, 9> edges{1e-4, 1e-3, 1e-2, 0.03, 0.1, 0.3, 1, 3, 1e300};
+  std::map<double, std::array<int, edges.size()>> histograms;
+  for (double tolerance : {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) {
+    std::vector<model::Scene> asked = scenes;
+    std::vector<SegmentTask> tasks;
+    for (model::Scene& scene : asked) {
+      scene.goal.accuracy = tolerance;
+      scene.goal.up_to = Fidelity::slice;
+      tasks.push_back({&scene, 0});
+    }
+    solvers::AutoModel model(PETSC_COMM_SELF);
+    model.solve(tasks);  // makes the solver
+    double start = MPI_Wtime();
+    const auto found = model.solve(tasks);
+    const double seconds = MPI_Wtime() - start;
+    start = MPI_Wtime();
+    for (const SegmentTask& task : tasks) (void)solvers::plan_segment(*task.scene, 0);
+    const double planning = MPI_Wtime() - start;
+    std::vector<double> ratios;
+    std::vector<SlicePlan> best(size);
+    int good = 0, all = 0;
+    double worst = 0;
+    std::map<Fidelity, int> chosen;
+    for (std::size_t i = 0; i < size; ++i) {
+      double cheapest = 1e300;
+      best[i] = exact[i];
+      for (const Rung& rung : rungs)
+        if (rung.error[i] <= tolerance && rung.cost[i] < cheapest) {
+          cheapest = rung.cost[i];
+          best[i] = rung.plan;
+          if (best[i].slice_count >= 4) best[i].cuts = exact[i].cuts;
+        }
+      if (!counts[i]) continue;
+      const double error = error_of(found[i], truth[i]);
+      const double estimate = found[i].discretisation_error + model.plans()[i].model_error;
+      ++all;
+      good += error <= tolerance;
+      worst = std::max(worst, error / tolerance);
+      ++chosen[found[i].fidelity];
+      if (cheapest < 1e300) ratios.push_back((model.plans()[i].cost + solvers::planning_cost) / cheapest);
+      const double ratio = error / std::max(estimate, 1e-14);
+      for (std::size_t k = 0; k < edges.size(); ++k)
+        if (error > 1e-13 && ratio < edges[k]) {
+          ++histograms[tolerance][k];
+          break;
+        }
+    }
+    double hindsight = 0;
+    (void)solve(asked, best, &hindsight);
+    std::printf("%8.0e %8.2f%% %9.2g %9.2f %8.2f %8.2f %9.2f %9.2f   %d %d %d\n", tolerance,
+                100.0 * good / all, worst, quantile(ratios, 0.5), quantile(ratios, 0.95), seconds / hindsight,
+                1e6 * planning / static_cast<double>(size), 1e6 * seconds / static_cast<double>(size),
+                chosen[Fidelity::rigid], chosen[Fidelity::first_order], chosen[Fidelity::slice]);
+  }
+  std::printf("\ntrue over estimated error, share of scenes [%%], where the true error is above 1e-13\n%8s",
+              "TOL");
+  for (std::size_t k = 0; k + 1 < edges.size(); ++k) std::printf("  <%7.0e", edges[k]);
+  std::printf("    beyond\n");
+  for (auto it = histograms.rbegin(); it != histograms.rend(); ++it) {
+    int all = 0;
+    for (int number : it->second) all += number;
+    std::printf("%8.0e", it->first);
+    for (int number : it->second) std::printf("  %8.2f", 100.0 * number / std::max(all, 1));
+    std::printf("\n");
+  }
+}

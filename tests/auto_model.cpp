@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: BSD-2-Clause
+// Error estimates against fully resolved solutions, and the model that -fidelity auto chooses by them.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "gaiter/physics/segment_forecast.hpp"
+#include "gaiter/solvers/auto_model.hpp"
+#include "gaiter/solvers/sliding_model.hpp"
+#include "paper_scene.hpp"
+#include "slice_tasks.hpp"
+
+namespace {
+
+using namespace gaiter;
+using model::Fidelity;
+using solvers::SegmentTask;
+using solvers::SlicePlan;
+
+model::SegmentResult by_plan(const model::Scene& scene, std::size_t segment, const SlicePlan& plan) {
+  const SegmentTask task{&scene, segment, &plan};
+  return solvers::solve_segments(PETSC_COMM_SELF, {&task, 1})[0];
+}
+
+double error_of(const model::SegmentResult& found, const model::SegmentResult& truth) {
+  return std::max(std::fabs(found.pressure_rest / truth.pressure_rest - 1),
+                  std::fabs(found.pressure_actuated / truth.pressure_actuated - 1));
+}
+
+model::SegmentResult resolved(const model::Scene& scene, std::size_t segment) {
+  physics::SegmentForecast forecast(scene, segment);
+  forecast.analyse();
+  return by_plan(scene, segment, {.slice_count = 48, .wall_points = 16, .cuts = forecast.cuts()});
+}
+
+// One segment whose bandage leaves the leg at its narrow end, at different heights at rest and under voltage.
+model::Scene part_open() {
+  model::Scene scene = paper::scene(1.05, 2e3);
+  scene.leg.segments.resize(1);
+  scene.bandage.modules.resize(1);
+  return scene;
+}
+
+// The forecast is above the true error and within a factor of ten, wherever that is above rounding.
+TEST(Forecast, OfTheLegsGivingWayAndItsFirstOrder) {
+  for (const double stretch : {1.4, 1.8, 2.2}) {
+    const model::Scene scene = paper::scene(stretch);
+    for (std::size_t segment = 0; segment < 6; ++segment) {
+      const auto truth = resolved(scene, segment);
+      for (const Fidelity fidelity : {Fidelity::rigid, Fidelity::first_order}) {
+        const auto found =
+            by_plan(scene, segment, {.fidelity = fidelity, .slice_count = 48, .wall_points = 16});
+        EXPECT_EQ(found.fidelity, fidelity);
+        physics::SegmentForecast forecast(scene, segment);
+        forecast.analyse();
+        const double error = error_of(found, truth);
+        const double expected =
+            fidelity == Fidelity::rigid ? forecast.compliance_error() : forecast.first_order_error();
+        EXPECT_GT(expected, error) << stretch << ", segment " << segment;
+        EXPECT_LT(expected, 10 * error) << stretch << ", segment " << segment;
+      }
+    }
+  }
+}
+
+TEST(Forecast, OfTheWall) {
+  for (const double thickness : {0.3e-3, 1e-3, 3e-3})
+    for (const double stretch : {1.4, 2.2}) {
+      model::Scene scene = paper::cylinder(0.0396, stretch);
+      scene.bandage.thickness = thickness;
+      const auto truth = resolved(scene, 0);
+      physics::SegmentForecast forecast(scene, 0);
+      forecast.analyse();
+      for (int points = 1; points <= 4; ++points) {
+        const double error = error_of(by_plan(scene, 0, {.slice_count = 1, .wall_points = points}), truth);
+        EXPECT_GT(forecast.wall_error(points), error - 1e-14)
+            << thickness << ", " << stretch << ", " << points;
+        EXPECT_LT(forecast.wall_error(points), 30 * error + 1e-12)
+            << thickness << ", " << stretch << ", " << points;
+      }
+    }
+}
+
+// What sliding changes, against the sliding model: within a factor of two where the change is small.
+TEST(Forecast, OfSliding) {
+  for (const double stretch : {1.6, 1.8, 2.0}) {
+    model::Scene scene = paper::scene(stretch, 0);
+    scene.leg.model = model::LegModel::rigid;
+    for (std::size_t segment = 0; segment < 3; ++segment) {
+      const SegmentTask task{&scene, segment};
+      const double slid = solvers::solve_sliding(task).result.pressure_rest;
+      const double laid = solvers::solve_segments(PETSC_COMM_SELF, {&task, 1})[0].pressure_rest;
+      const double change = std::fabs(slid / laid - 1);
+      const double expected = physics::SegmentForecast(scene, segment).sliding_error();
+      EXPECT_GT(expected, 0.5 * change) << stretch << ", segment " << segment << ", " << change;
+      EXPECT_LT(expected, 2 * change + 1e-3) << stretch << ", segment " << segment << ", " << change;
+    }
+  }
+}
+
+// Where the bandage leaves the leg the height is cut, so that few slices do what hundreds would.
+TEST(Cuts, MakeUpForTheKinkOfAPartlyOpenBandage) {
+  const model::Scene scene = part_open();
+  physics::SegmentForecast forecast(scene, 0);
+  forecast.analyse();
+  ASSERT_FALSE(forecast.cuts().empty());
+  const auto cut = by_plan(scene, 0, {.slice_count = 24, .wall_points = 8, .cuts = forecast.cuts()});
+  const auto uncut = by_plan(scene, 0, {.slice_count = 24, .wall_points = 8});
+  const auto truth = resolved(scene, 0);
+  const auto brute = by_plan(scene, 0, {.slice_count = 2000, .wall_points = 8});
+  EXPECT_LT(error_of(brute, truth), 3e-6);
+  EXPECT_LT(error_of(cut, truth), 1e-7);
+  EXPECT_GT(error_of(uncut, truth), 10 * error_of(cut, truth));
+}
+
+TEST(Auto, KeepsTheAccuracyWithTheCheapestModel) {
+  std::vector<model::Scene> scenes;
+  for (const double tolerance : {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6})
+    for (const double stretch : {1.08, 1.4, 1.8, 2.2}) {
+      scenes.push_back(paper::scene(stretch, 5e3));
+      scenes.back().goal.accuracy = tolerance;
+      scenes.back().goal.up_to = Fidelity::slice;
+    }
+  const auto tasks = tasks::all_segments(scenes);
+  solvers::AutoModel model(PETSC_COMM_SELF);
+  const auto found = model.solve(tasks);
+  int rigid = 0, first_order = 0;
+  for (std::size_t t = 0; t < tasks.size(); ++t) {
+    const double tolerance = tasks[t].scene->goal.accuracy;
+    const auto truth = resolved(*tasks[t].scene, tasks[t].segment);
+    if (!(truth.pressure_actuated > 0)) continue;
+    EXPECT_LE(error_of(found[t], truth), tolerance) << "task " << t;
+    EXPECT_LE(found[t].discretisation_error + model.plans()[t].model_error, tolerance) << "task " << t;
+    EXPECT_GT(found[t].slice_count, 0);
+    EXPECT_GT(found[t].wall_points, 0);
+    rigid += found[t].fidelity == Fidelity::rigid;
+    first_order += found[t].fidelity == Fidelity::first_order;
+    if (tolerance < 1e-4) {
+      EXPECT_EQ(found[t].fidelity, Fidelity::slice);
+    }
+  }
+  EXPECT_GT(rigid, 0);
+  EXPECT_GT(first_order, 0);
+}
+
+// A result does not depend on what else is in the batch.
+TEST(Auto, SolvesEachSegmentAsIfAlone) {
+  std::vector<model::Scene> scenes{paper::scene(1.4), paper::scene(2.2)};
+  for (model::Scene& scene : scenes) scene.goal.up_to = Fidelity::slice;
+  scenes[1].goal.accuracy = 1e-5;
+  const auto tasks = tasks::all_segments(scenes);
+  solvers::AutoModel model(PETSC_COMM_SELF);
+  const auto span = model.solve(tasks);
+  const std::vector<model::SegmentResult> together(span.begin(), span.end());
+  for (std::size_t t = 0; t < tasks.size(); ++t) {
+    const auto alone = model.solve({&tasks[t], 1});
+    EXPECT_TRUE(tasks::same_bits(tasks::numbers_of(alone[0]), tasks::numbers_of(together[t]))) << t;
+  }
+}
+
+TEST(Auto, ComputesOnlyWhatIsWanted) {
+  model::Scene scene = paper::scene(1.8);
+  scene.goal.up_to = Fidelity::slice;
+  scene.goal.pressure_actuated = false;
+  const SegmentTask task{&scene, 0};
+  solvers::AutoModel model(PETSC_COMM_SELF);
+  const auto result = model.solve({&task, 1})[0];
+  EXPECT_NEAR(result.pressure_rest, 2658.46359, 2.7);
+  EXPECT_TRUE(std::isnan(result.pressure_actuated));
+  EXPECT_TRUE(std::isnan(result.actuation_drop));
+}
+
+// A rigid leg loses no volume, so the volume change needs one that gives way; the drop needs more digits.
+TEST(Auto, GoesByTheWantedOutput) {
+  model::Scene scene = paper::scene(1.4);
+  scene.goal.up_to = Fidelity::slice;
+  scene.goal.accuracy = 0.03;
+  EXPECT_EQ(solvers::plan_segment(scene, 2).fidelity, Fidelity::rigid);
+  scene.goal.volume_change = true;
+  EXPECT_NE(solvers::plan_segment(scene, 2).fidelity, Fidelity::rigid);
+  scene.goal.volume_change = false;
+  scene.goal.actuation_drop = true;
+  EXPECT_NE(solvers::plan_segment(scene, 2).fidelity, Fidelity::rigid);
+}
+
+// Beyond slices: what sliding changes on the paper's ankle is more than 1 % at 2.2 and less than 5 % at 1.4.
+TEST(Auto, SlidesWhereItMatters) {
+  model::Scene scene = paper::scene(2.2, 0);
+  scene.goal.up_to = Fidelity::sliding;
+  scene.goal.accuracy = 0.01;
+  EXPECT_EQ(solvers::plan_segment(scene, 0).fidelity, Fidelity::sliding);
+  scene = paper::scene(1.4, 0);
+  scene.goal.up_to = Fidelity::sliding;
+  scene.goal.accuracy = 0.05;
+  EXPECT_LT(solvers::plan_segment(scene, 0).fidelity, Fidelity::sliding);
+  scene.goal.up_to = Fidelity::axisym;
+  EXPECT_EQ(solvers::plan_segment(scene, 0).fidelity, Fidelity::axisym);
+}
+
+}  // namespace
