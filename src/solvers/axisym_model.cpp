@@ -17,6 +17,7 @@ constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 struct Solved {
   std::vector<AxisymSummary> rest, actuated;  // a segment each
+  int unknowns = 0;
   bool converged() const { return rest[0].converged && actuated[0].converged; }
 };
 
@@ -31,6 +32,7 @@ template <int P>
 Solved solve_states(MPI_Comm comm, const Piece& piece, int refine, const AxisymObserver& observer) {
   AxisymCase<P> problem(comm, piece.scene, piece.first, piece.last, refine);
   Solved solved;
+  solved.unknowns = problem.unknowns();
   solved.rest = problem.rest();
   if (observer && solved.rest[0].converged) problem.show(false, observer);
   const auto& modules = piece.scene.bandage.modules;
@@ -116,6 +118,8 @@ std::vector<model::SegmentResult> solve_piece(MPI_Comm comm, const Piece& piece,
   std::vector<model::SegmentResult> results;
   for (std::size_t k = 0; k < fine.rest.size(); ++k)
     results.push_back(result_of(scene, piece.first + k, fine.rest[k], fine.actuated[k], length, unit));
+  for (model::SegmentResult& result : results)
+    result.unknowns = fine.unknowns / static_cast<int>(results.size());
   if (!fine.rest[0].converged || refine == 0) return results;
   const Solved coarse = solve_states(comm, {scene, piece.first, piece.last, fine.converged()}, refine - 1);
   if (!coarse.rest[0].converged || (fine.converged() && !coarse.converged())) return results;

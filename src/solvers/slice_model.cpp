@@ -242,6 +242,7 @@ std::span<const model::SegmentResult> SliceModel::solve(std::span<const SegmentT
     result.fidelity = fidelity;
     result.slice_count = static_cast<int>(own.end - own.first);
     result.wall_points = own.wall_points;
+    if (fidelity == model::Fidelity::slice) result.unknowns = 2 * result.slice_count;
     // A slice's state is that of the branch from rest; where this one ends is not looked for.
     result.voltage_stable =
         result.status < Status::pulled_in ? own.voltage : std::numeric_limits<double>::quiet_NaN();
