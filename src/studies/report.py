@@ -180,13 +180,17 @@ class Report:
                 best = error[i]
                 front.append(i)
         drawing, axes = plt.subplots(figsize=(9, 6))
-        auto = np.array([name.startswith("auto") for name in rungs])
-        axes.loglog(cost[front], error[front], "-", color="0.7", lw=3, label="Pareto front")
-        for mask, form, label in ((shown & ~auto, "o", "rungs"), (shown & auto, "*", "auto")):
-            axes.loglog(cost[mask], error[mask], form, ms=8, label=f"{label}, true error")
+        axes.loglog(cost[front], error[front], "-", color="0.8", lw=4, label="Pareto front", drawstyle="steps-post")
+        models = [name.split("_")[0].replace("first", "first order") for name in rungs]
+        for model in dict.fromkeys(model for model, is_shown in zip(models, shown) if is_shown):
+            mask = shown & (np.array(models) == model)
+            axes.loglog(cost[mask], error[mask], "*" if model == "auto" else "o", ms=11 if model == "auto" else 6,
+                        label=f"{model}, true error")
         axes.loglog(cost[shown], estimate[shown], "_", color="0.4", label="estimated error")
         for i in np.flatnonzero(shown):
-            axes.annotate(rungs[i], (cost[i], error[i]), fontsize=7, xytext=(4, 3), textcoords="offset points")
+            if i in front or models[i] == "auto":
+                axes.annotate(rungs[i], (cost[i], error[i]), fontsize=7, xytext=(4, 5), textcoords="offset points",
+                              rotation=20)
         axes.set(xlabel="time of a segment (s)", ylabel="relative error")
         axes.grid(alpha=0.3)
         axes.legend()
