@@ -18,6 +18,8 @@ gaiter_program_test(sweep_runs LABEL properties)
 set_tests_properties(sweep_runs PROPERTIES PROCESSORS 2)
 gaiter_program_test(readme LABEL command_line)
 gaiter_program_test(report LABEL command_line)
+gaiter_program_test(tradeoff LABEL properties)
+set_tests_properties(tradeoff PROPERTIES PROCESSORS 2)
 gaiter_add_test(architecture LABEL architecture
                 COMMAND ${GAITER_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/architecture.py $<TARGET_FILE:gaiter>
                         ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR} ${CMAKE_CTEST_COMMAND})

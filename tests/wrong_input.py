@@ -11,8 +11,8 @@ STOCKING = str(SOURCE / "options" / "scenes" / "stocking_single_segment.yaml")
 # name: command line, and what the line must say besides
 CASES = {
     # commands
-    "no command": ([], ["a command is missing", "solve, sweep or report"]),
-    "unknown command": (["sovle", *SCENE], ["'sovle'", "did you mean 'solve'", "solve, sweep and report"]),
+    "no command": ([], ["a command is missing", "solve, sweep, tradeoff or report"]),
+    "unknown command": (["sovle", *SCENE], ["'sovle'", "did you mean 'solve'", "solve, sweep, tradeoff and report"]),
     "word too many": (["solve", *SCENE, "twice"], ["'twice'", "no option"]),
     "value with blanks unquoted": (["solve", *SCENE, "-voltage", "5", "kV"], ["'kV'", "quotes"]),
     # names

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-2-Clause
 #include "gaiter/archive/layout.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 #include "gaiter/base/error.hpp"
@@ -25,7 +26,14 @@ std::vector<FileVariable> variables_of(const Layout& layout) {
   }
   for (std::size_t i = 0; i < layout.swept.size(); ++i) {
     const SweptVariable& swept = layout.swept[i];
-    variables.push_back({swept.name, swept.unit, swept.long_name, Stored::float64, false, {}, nullptr, i});
+    variables.push_back({swept.name,
+                         swept.unit,
+                         swept.long_name,
+                         swept.words.empty() ? Stored::float64 : Stored::int8,
+                         false,
+                         {swept.words.begin(), swept.words.end()},
+                         nullptr,
+                         i});
   }
   variables.push_back({"wall_time",
                        "s",
@@ -55,6 +63,11 @@ void gather(const FileVariable& variable, const CaseResults& results, std::byte*
   const std::span<const double> values = variable.swept < results.swept_values.size()
                                              ? results.swept_values[variable.swept]
                                              : results.wall_times;
+  if (variable.stored == Stored::int8) {
+    std::transform(values.begin(), values.end(), out,
+                   [](double value) { return static_cast<std::byte>(value); });
+    return;
+  }
   std::memcpy(out, values.data(), values.size_bytes());
 }
 

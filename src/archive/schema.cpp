@@ -91,6 +91,7 @@ constexpr std::array table{
     Column{"slice_count", "1", "slices over the height of the segment; 0 for finite elements",
            &Row::slice_count},
     Column{"wall_points", "1", "Gauss points through the wall; 0 for finite elements", &Row::wall_points},
+    Column{"unknowns", "1", "unknowns of the system of equations; 0 for closed forms", &Row::unknowns},
     Column{"iterations", "1", "iterations of the solver, the most that any slice of the segment took",
            &Row::iterations},
     Column{"status", "", "state of the bandage on the segment, the gravest of its slices", &Row::status},

@@ -175,6 +175,7 @@ std::vector<model::SegmentResult> results_of(const Piece& piece, const Level<P>&
   for (std::size_t k = 0; k < level.rest.size(); ++k) {
     results.push_back(
         result_of(piece.scene, piece.first + k, level.rest[k], level.actuated[k], length, unit));
+    results.back().unknowns = level.problem.unknowns() / static_cast<int>(level.rest.size());
     if (!level.error.empty())
       results.back().discretisation_error = results.back().error_estimate = level.error[k];
   }

@@ -334,6 +334,7 @@ std::vector<model::SegmentResult> SlidingStudy::run() {
     results.push_back(physics::summarise_sliding(outcomes_[t], leg.height, leg.lower_radius, leg.upper_radius,
                                                  reference, wall_error));
     results.back().slice_count = system_.shape().slices();
+    results.back().unknowns = system_.shape().unknowns();
     results.back().wall_points = points;
   }
   return results;

@@ -49,15 +49,17 @@ CommandLine split_command_line(int argc, const char* const* argv) {
 
 Command parse_command(const std::string& word) {
   if (word.empty())
-    throw base::InputError("a command is missing: solve, sweep or report; gaiter -help lists the options");
+    throw base::InputError(
+        "a command is missing: solve, sweep, tradeoff or report; gaiter -help lists the options");
   if (word == "solve") return Command::solve;
   if (word == "sweep") return Command::sweep;
   if (word == "report") return Command::report;
-  const std::array<std::string, 3> commands{"solve", "sweep", "report"};
+  if (word == "tradeoff") return Command::tradeoff;
+  const std::array<std::string, 4> commands{"solve", "sweep", "tradeoff", "report"};
   const std::string near = base::nearest(word, commands);
-  throw base::InputError("unknown command '" + word + "'" +
-                         (near.empty() ? "" : "; did you mean '" + near + "'?") +
-                         " The commands are solve, sweep and report; gaiter -help lists the options");
+  throw base::InputError(
+      "unknown command '" + word + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?") +
+      " The commands are solve, sweep, tradeoff and report; gaiter -help lists the options");
 }
 
 }  // namespace gaiter::studies

@@ -35,6 +35,7 @@ std::string help_text() {
       "          linspace(lo,hi,n), logspace(lo,hi,n), uniform(lo,hi) or normal(mean,sd); run again, the "
       "same\n"
       "          command goes on where it was stopped\n"
+      "  tradeoff  every model of one scene, coarse to fine, against the finest: error and cost\n"
       "  report  an archive as an HTML page with figures: -archive FILE.h5\n"
       "\n"
       "Values carry units (\"1 mm\", \"11.3 kV\", \"28.5 mmHg\"); a bare number is SI. A list is separated "

@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 #include <petscsys.h>
 
+#include <algorithm>
 #include <array>
 #include <type_traits>
 #include <variant>
@@ -27,6 +28,7 @@
 #include "gaiter/studies/solve.hpp"
 #include "gaiter/studies/solver_options.hpp"
 #include "gaiter/studies/sweep.hpp"
+#include "gaiter/studies/tradeoff.hpp"
 
 namespace gaiter::studies {
 
@@ -163,6 +165,21 @@ int solve(const Request& request, const CommandLine& line) {
   return code;
 }
 
+int tradeoff(const Request& request, const CommandLine& line) {
+  const bool printing = petsc::rank(PETSC_COMM_WORLD) == 0;
+  check_writable(request);
+  const std::vector<RungResult> rungs = climb(PETSC_COMM_WORLD, rungs_of(request.scene));
+  const archive::Provenance provenance = provenance_of(request, line);
+  archive::agreed(PETSC_COMM_WORLD, "-output " + request.output, [&] {
+    if (printing) write_tradeoff(request.output, tradeoff_layout(request.scene, rungs), provenance, rungs);
+  });
+  if (printing) fmt::print("{}\n", tradeoff_table(request.scene, rungs));
+  return std::ranges::all_of(rungs.back().rows,
+                             [](const auto& row) { return model::trustworthy(row.status); })
+             ? success
+             : untrustworthy;
+}
+
 }  // namespace
 
 int run_program(petsc::Session& session, const CommandLine& line) {
@@ -201,7 +218,9 @@ int run_program(petsc::Session& session, const CommandLine& line) {
     return success;
   }
   std::string outcome = "wrote " + request.output;
-  const int code = command == Command::sweep ? sweep(request, designs, line, outcome) : solve(request, line);
+  const int code = command == Command::sweep      ? sweep(request, designs, line, outcome)
+                   : command == Command::tradeoff ? tradeoff(request, line)
+                                                  : solve(request, line);
   if (printing && code <= untrustworthy) {
     if (request.comparison == Comparison::paper) fmt::print("{}\n", paper_comparison(request.scene));
     fmt::print("{}\n", outcome);

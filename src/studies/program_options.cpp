@@ -48,7 +48,7 @@ std::vector<Option> program_options() {
        .format = "a file name",
        .default_text = "gaiter.h5",
        .doc = "Archive to write (HDF5); of report the page (HTML), by default named like its archive.",
-       .commands = {Command::solve, Command::sweep, Command::report}},
+       .commands = {Command::solve, Command::sweep, Command::tradeoff, Command::report}},
       {.name = "outputs",
        .kind = Kind::text,
        .scope = Scope::program,

@@ -17,7 +17,7 @@ MMHG = 133.322387415  # [Pa]
 MOST_POINTS = 20000  # cases that are drawn; of more, evenly many
 MOST_ROWS = 60  # of a table
 MOST_SEGMENTS = 12  # in figures and tables
-PER_CASE = {"case", "wall_time", "rung", "unknowns", "segment_time"}  # what is not a swept option
+PER_CASE = {"case", "wall_time", "rung", "true_error", "segment_time"}  # what is not a swept option
 RESULTS = {"pressure_rest": "pressure at rest (kPa)", "pressure_actuated": "pressure under voltage (kPa)",
            "actuation_drop": "drop by the voltage (kPa)", "volume_change": "volume change"}
 STYLE = ("body{font:15px/1.5 sans-serif;max-width:62em;margin:2em auto;padding:0 1em}table{border-collapse:collapse}"
@@ -167,11 +167,12 @@ class Report:
             table(["result", "segment", "least", "5 %", "median", "95 %", "most"], rows)
 
     def error_and_cost(self):
-        rungs = [name.decode() for name in self.file["rung"][:]]
-        cost, unknowns = self.file["segment_time"][:], self.file["unknowns"][:]
-        # A rung is as good as the worst of its segments; what has no result is left out.
-        error = np.nanmax(np.atleast_2d(self.file["true_error"][:]), axis=1)
-        estimate = np.nanmax(np.atleast_2d(self.file["error_estimate"][:]), axis=1)
+        names = words_of(self.file["rung"])
+        rungs = [names[value] for value in self.file["rung"][:]]
+        cost, unknowns, error = self.file["segment_time"][:], self.file["unknowns"][:].mean(1), self.file["true_error"][:]
+        trusted = self.file["status"][:] < next(value for value, word in words_of(self.file["status"]).items()
+                                                if word == "no_equilibrium")
+        estimate = np.fmax.reduce(np.where(trusted, self.file["error_estimate"][:], np.nan), axis=1)
         shown = np.isfinite(error) & (error > 0)
         best, front = np.inf, []
         for i in np.argsort(cost):
@@ -179,13 +180,17 @@ class Report:
                 best = error[i]
                 front.append(i)
         drawing, axes = plt.subplots(figsize=(9, 6))
-        auto = np.array([name.startswith("auto") for name in rungs])
-        axes.loglog(cost[front], error[front], "-", color="0.7", lw=3, label="Pareto front")
-        for mask, form, label in ((shown & ~auto, "o", "rungs"), (shown & auto, "*", "auto")):
-            axes.loglog(cost[mask], error[mask], form, ms=8, label=f"{label}, true error")
+        axes.loglog(cost[front], error[front], "-", color="0.8", lw=4, label="Pareto front", drawstyle="steps-post")
+        models = [name.split("_")[0].replace("first", "first order") for name in rungs]
+        for model in dict.fromkeys(model for model, is_shown in zip(models, shown) if is_shown):
+            mask = shown & (np.array(models) == model)
+            axes.loglog(cost[mask], error[mask], "*" if model == "auto" else "o", ms=11 if model == "auto" else 6,
+                        label=f"{model}, true error")
         axes.loglog(cost[shown], estimate[shown], "_", color="0.4", label="estimated error")
         for i in np.flatnonzero(shown):
-            axes.annotate(rungs[i], (cost[i], error[i]), fontsize=7, xytext=(4, 3), textcoords="offset points")
+            if i in front or models[i] == "auto":
+                axes.annotate(rungs[i], (cost[i], error[i]), fontsize=7, xytext=(4, 5), textcoords="offset points",
+                              rotation=20)
         axes.set(xlabel="time of a segment (s)", ylabel="relative error")
         axes.grid(alpha=0.3)
         axes.legend()

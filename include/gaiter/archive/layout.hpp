@@ -12,11 +12,12 @@
 
 namespace gaiter::archive {
 
-// An option that differs from case to case.
+// What differs from case to case, such as an option.
 struct SweptVariable {
-  std::string name;  // of the option, without the dash
+  std::string name;  // of an option: without the dash
   std::string unit;  // udunits spelling, SI
   std::string long_name;
+  std::vector<std::string> words = {};  // of an enumeration, at most 127; word i stands for the value i
 };
 
 // What is known of an archive before anything is solved. Its size does not grow with the number of cases.

@@ -49,11 +49,12 @@ struct SegmentResult {
   // Largest voltage reached on the branch of stable states that starts at rest: the module's own where the
   // actuated state was found, NaN where the model does not follow that branch to its end [V].
   double voltage_stable = 0;
-  double error_estimate = 0;            // discretisation_error, plus model_error where that is known [1]
-  double discretisation_error = 0;      // relative, of the pressures, against the same model resolved [1]
+  double error_estimate = 0;        // discretisation_error, plus model_error where that is known [1]
+  double discretisation_error = 0;  // relative, of the pressures, against the same model resolved [1]
   double model_error = 0;  // what the models beyond this one would change, as far as known; NaN: unknown [1]
   int slice_count = 0;     // over the height; 0: finite elements
   int wall_points = 0;     // through the wall; 0: finite elements
+  int unknowns = 0;        // of the system solved; of a whole leg: its share [1]
   int iterations = 0;      // Newton or fixed-point steps, the most of any slice
   Status status = Status::contact;
   Fidelity fidelity = Fidelity::slice;
@@ -79,8 +80,8 @@ inline void derive_error(SegmentResult& result) {
 // A row of which nothing but the reason is known.
 inline SegmentResult without_numbers(Status status, Fidelity fidelity) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  SegmentResult result{none, none, none, none, none, none, none, none, none, none, none, none,
-                       none, none, none, none, none, none, none, none, none, none};
+  SegmentResult result{none, none, none, none, none, none, none, none, none, none, none,
+                       none, none, none, none, none, none, none, none, none, none, none};
   result.status = status;
   result.fidelity = fidelity;
   return result;

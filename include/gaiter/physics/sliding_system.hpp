@@ -40,6 +40,8 @@ struct SlidingShape {
   bool rigid = false;  // the leg does not give way
 
   int slices() const { return sliding_degree * elements; }
+  // Heights z between the fixed ends, and a strain a slice.
+  int unknowns() const { return 2 * slices() - 1; }
 };
 
 // Elements for at least `slices` slices.

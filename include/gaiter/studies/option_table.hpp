@@ -12,7 +12,7 @@
 
 namespace gaiter::studies {
 
-enum class Command { solve, sweep, report };
+enum class Command { solve, sweep, tradeoff, report };
 enum class Comparison { none, paper };  // paper: the paper's printed results beside the computed ones
 
 enum class Progress { automatic, line, log, off };  // how a sweep tells how far it is
@@ -74,7 +74,7 @@ struct Option {
   std::string_view example = "";       // where there is no default
   std::string_view doc = "";
   bool sweepable = false;
-  std::vector<Command> commands = {Command::solve, Command::sweep};
+  std::vector<Command> commands = {Command::solve, Command::sweep, Command::tradeoff};
   std::vector<std::string_view> yields_to = {};  // patterns by which a segment takes a value of its own
   Setter set = nullptr;                          // null: a program option
 
