@@ -266,6 +266,7 @@ void SliceModel::summarise(model::Fidelity fidelity) {
       result.fidelity = fidelity;
       result.slice_count = static_cast<int>(block.heights.size());
       result.wall_points = static_cast<int>(numbers.wall_points);
+      if (fidelity == model::Fidelity::slice) result.unknowns = 2 * result.slice_count;
       // A slice's state is that of the branch from rest; where this one ends is not looked for.
       result.voltage_stable =
           result.status < Status::pulled_in ? numbers.voltage : std::numeric_limits<double>::quiet_NaN();
