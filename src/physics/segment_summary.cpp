@@ -42,6 +42,7 @@ model::SegmentResult summarise(std::span<const SliceOutcome> slices, const Quadr
       mean([](const auto& s) { return s.pressure_actuated * s.radius_actuated; }) /
       mean([](const auto& s) { return s.bandage_radius_actuated; });
   model::derive_changes(result);
+  result.actuation_drop = mean([](const auto& s) { return s.actuation_drop; });
   result.actuation_pressure = mean([](const auto& s) { return s.actuation_pressure; });
   result.volume_rest = height * mean([&](const auto& s) { return square(s.radius_rest); });
   result.volume_actuated = height * mean([&](const auto& s) { return square(s.radius_actuated); });
@@ -52,7 +53,11 @@ model::SegmentResult summarise(std::span<const SliceOutcome> slices, const Quadr
                          result.volume_initial;
   result.radius_actuated = mean([](const auto& s) { return s.radius_actuated; });
   result.stretch_actual = mean([](const auto& s) { return s.bandage_radius_rest / s.reference_radius; });
-  result.error_estimate = quadrature_error;
+  const auto relative = [](double error, double pressure) { return pressure > 0 ? error / pressure : 0; };
+  result.error_estimate =
+      quadrature_error +
+      std::max(relative(mean([](const auto& s) { return s.error_rest; }), result.pressure_rest),
+               relative(mean([](const auto& s) { return s.error_actuated; }), result.pressure_actuated));
   return result;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-2-Clause
 #include "gaiter/physics/slice_newton.hpp"
 
+#include <algorithm>
+
 #include "gaiter/physics/slice_kernel.hpp"
 
 namespace gaiter::physics {
@@ -8,6 +10,9 @@ namespace gaiter::physics {
 namespace {
 
 constexpr double epsilon = 2.2e-16;
+constexpr double rounding_caution = 8;  // of an estimate of rounding errors
+// A priori estimates of the quadrature through the wall can be a few times too low where it is almost exact.
+constexpr double wall_caution = 8, smallest_sure_wall_error = 1e-12;
 constexpr double far =
     4;  // ratio of the bandage's and the leg's pressure beyond which logarithms are compared
 
@@ -28,7 +33,7 @@ inline __attribute__((always_inline)) void initialise(PackState& state) {
   GAITER_EACH {
     state.low[i] = -1;
     state.smallest_slope[i] = 1;
-    state.iterations[i] = state.failed[i] = 0;
+    state.iterations[i] = state.failed[i] = state.left[i] = 0;
     state.open[i] = 1;
   }
 }
@@ -55,6 +60,7 @@ void start_at_rest(const SliceShape& shape, const Pack* rows, PackState& state, 
   GAITER_EACH {
     const double k = rigid_pressure[i] > 0 ? -rigid_slope[i] / rigid_pressure[i] : 0;
     const double pressure = state.pressure[i];
+    state.settled_slope[i] = rigid_slope[i];
     const double step = -pressure * k * state.strain[i] / (1 + pressure * k * state.strain_slope[i]);
     const double moved = pressure + step > 0 ? pressure + step : 0.5 * pressure;
     const double kept = capped[i] > 0 || moved >= limit[i] ? pressure : moved;
@@ -170,6 +176,9 @@ void advance_newton(const SliceShape& shape, const Pack* rows, const Pack& direc
     state.low[i] = open ? low : state.low[i];
     state.high[i] = open ? high : state.high[i];
     state.smallest_slope[i] = open && slope < state.smallest_slope[i] ? slope : state.smallest_slope[i];
+    const double missed = slope > 0 ? next : high - low;
+    state.left[i] = open && closing ? (polish ? error : missed) : state.left[i];
+    state.settled_slope[i] = open ? steep : state.settled_slope[i];
     state.iterations[i] += state.open[i];
     state.open[i] = open && !closing ? 1 : 0;
   }
@@ -197,9 +206,33 @@ void advance_fixed_point(const SliceShape& shape, const Pack* rows, const Pack& 
   }
   evaluate_residual(shape, rows, state);
   GAITER_EACH {
+    // What Newton's next step would still change.
+    const double next = std::fabs(state.pressure_residual[i] / scalar_slope(state, i));
+    state.left[i] = state.open[i] > 0 ? next : state.left[i];
+    state.settled_slope[i] = state.open[i] > 0 ? state.bandage_slope[i] : state.settled_slope[i];
     state.iterations[i] += state.open[i];
     state.open[i] = state.open[i] > 0 && !(state.failed[i] > 0) && change[i] >= tolerance ? 1 : 0;
   }
+}
+
+double pressure_error(const SliceSystem& system, std::size_t slice, const PackState& state,
+                      double wall_error) {
+  const int i = static_cast<int>(slice % pack_width);
+  const double pressure = state.pressure[i];
+  if (!(pressure > 0)) return 0;
+  const bool law = system.shape().material == model::LegMaterial::compliance;
+  // Strain at which the bandage is slack, and the largest part of the leg's strain.
+  const double slack =
+      system.constant(slice, SliceShape::gap) / system.constant(slice, SliceShape::leg_radius);
+  const double part = law ? system.constant(slice, SliceShape::leg_1) : 0;
+  const double strain = std::fabs(slack) + std::fabs(state.strain[i]) + std::fabs(part);
+  const double steep = state.settled_slope[i];
+  const double slope = std::max(std::fabs(1 - steep * state.strain_slope[i]), epsilon);
+  const double passive = (pressure + state.rounding[i]) / slope;
+  const double bandage = 2 * passive + std::fabs(steep) * strain / slope;
+  const double wall = wall_error * std::max(0.0, passive - pressure) +
+                      wall_caution * std::min(wall_error, smallest_sure_wall_error) * passive;
+  return state.left[i] + wall + rounding_caution * epsilon * (pressure + bandage);
 }
 
 }  // namespace gaiter::physics

@@ -136,6 +136,7 @@ void SliceModel::rigid_pressures() {
       SliceOutcome& outcome = outcomes_[k * pack_width + i];
       outcome.pressure_rest_rigid = std::max(0.0, at_rest) * scale[i];
       outcome.pressure_actuated_rigid = std::max(0.0, actuated) * scale[i];
+      outcome.actuation_drop = std::min(std::max(0.0, at_rest), relief[i]) * scale[i];
     }
   }
 }
@@ -174,7 +175,7 @@ std::span<const model::SegmentResult> SliceModel::solve(std::span<const SegmentT
     if (energised_) actuate();
   }
   system_.energise(true);
-  if (energised_) finish_actuated();
+  if (energised_) finish_actuated(rigid);
 
   results_.clear();
   for (std::size_t t = 0; t < tasks_.size(); ++t) {

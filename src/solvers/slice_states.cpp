@@ -22,7 +22,10 @@ namespace {
 
 constexpr double caution = 10;            // of an error estimated from starting values instead of solutions
 constexpr double smallest_error = 4e-15;  // of a sum of some slices, by rounding
-constexpr int most_check_points = 128;    // over the height, of the rule that an error estimate compares with
+constexpr double small_actuation =
+    0.1;  // of the pressure at rest: a part of the path that few points resolve
+constexpr double error_of_drop = 1e-10;  // relative, for which its difference of pressures is good enough
+constexpr int most_check_points = 128;   // over the height, of the rule that an error estimate compares with
 // f' of the scalar equation of a slice: 1 for a bandage that does not stiffen or soften with the leg's
 // radius. Below this there may be a limit point near by, and the equilibrium is searched for along the path.
 constexpr double doubtful_slope = 0.5;
@@ -100,6 +103,11 @@ void SliceModel::solve_doubtful(bool at_rest) {
 
 // States of the slices to outcomes.
 void SliceModel::record(bool at_rest) {
+  for (std::size_t k = 0; k < system_.packs(); ++k) {
+    // The last step left the strain on a tangent of the leg's law, and a slice without contact where it was.
+    PackState& state = states_[k];
+    physics::leg_strain(system_.shape(), system_.pack(k), state.pressure, state.strain, state.strain_slope);
+  }
   each_slice([&](std::size_t slice, std::size_t t, std::size_t pack, int place) {
     SliceOutcome& outcome = outcomes_[slice];
     const PackState& state = states_[pack];
@@ -116,6 +124,10 @@ void SliceModel::record(bool at_rest) {
       outcome.bandage_radius_rest = pressure > 0 ? radius : std::max(radius, touching);
       if (pressure == 0) outcome.status = std::max(outcome.status, Status::slack);
     }
+    const double error = physics::pressure_error(system_, slice, state, tasks_[t].wall_error) *
+                         system_.constant(slice, SliceShape::pressure_scale);
+    (at_rest ? outcome.error_rest : outcome.error_actuated) = error;
+    if (!at_rest) outcome.actuation_drop = outcome.pressure_rest - pressure;
     outcome.pressure_actuated = pressure;
     outcome.strain_actuated = state.strain[place];
     outcome.radius_actuated = radius;
@@ -134,7 +146,7 @@ void SliceModel::float_free(std::size_t slice) {
 }
 
 // What needs the actuated radius of the bandage: lift-off, actuation pressure, field.
-void SliceModel::finish_actuated() {
+void SliceModel::finish_actuated(bool rigid) {
   Pack strain, pressure, slope, field;
   for (std::size_t k = 0; k < system_.packs(); ++k) {
     strain = states_[k].strain;
@@ -154,7 +166,37 @@ void SliceModel::finish_actuated() {
           pressure[slice - first] * system_.constant(slice, SliceShape::pressure_scale);
       outcome.electric_field = field[slice - first] * tasks_[owner_[slice]].voltage / inner;
     }
+    if (!rigid) small_drops(k, pressure);
   }
+}
+
+// A drop that is small beside the pressures, whose difference would have few of its digits: that of the
+// residual at rest between the two states, which is the actuation pressure, over its mean slope.
+void SliceModel::small_drops(std::size_t k, const Pack& actuation) {
+  const std::size_t first = k * pack_width, end = std::min(outcomes_.size(), first + pack_width);
+  const auto is_small = [&](const SliceOutcome& slice) {
+    return slice.pressure_actuated > 0 && slice.actuation_pressure < small_actuation * slice.pressure_rest &&
+           slice.error_rest + slice.error_actuated > error_of_drop * slice.actuation_drop;
+  };
+  if (std::none_of(outcomes_.begin() + first, outcomes_.begin() + end, is_small)) return;
+  static const physics::Quadrature gauss = physics::gauss_legendre(4);
+  system_.energise(false);
+  Pack mean_slope{};
+  for (std::size_t point = 0; point < gauss.nodes.size(); ++point) {
+    const double share = gauss.nodes[point];
+    Pack pressure, strain, strain_slope, bandage, bandage_slope;
+    for (int i = 0; i < pack_width; ++i)
+      pressure[i] = share * rest_pressure_[k][i] + (1 - share) * states_[k].pressure[i];
+    physics::leg_strain(system_.shape(), system_.pack(k), pressure, strain, strain_slope);
+    physics::bandage_pressure(system_.shape(), system_.pack(k), strain, bandage, bandage_slope);
+    for (int i = 0; i < pack_width; ++i)
+      mean_slope[i] += gauss.weights[point] * (1 - bandage_slope[i] * strain_slope[i]);
+  }
+  system_.energise(true);
+  for (std::size_t slice = first; slice < end; ++slice)
+    if (const std::size_t i = slice - first; is_small(outcomes_[slice]))
+      outcomes_[slice].actuation_drop =
+          actuation[i] / mean_slope[i] * system_.constant(slice, SliceShape::pressure_scale);
 }
 
 // Relative error of a task's height averages. From its pressures alone, where these leave no doubt.

@@ -22,6 +22,9 @@ struct SliceOutcome {
   double strain_actuated = 0;          // of the leg: 1 - radius_actuated / leg_radius with all its digits [1]
   double bandage_radius_rest = 0;      // inner face; larger than the leg's where they do not touch [m]
   double bandage_radius_actuated = 0;  // the leg's where the bandage has none (pulled in) [m]
+  double actuation_drop = 0;           // pressure_rest - pressure_actuated with all its digits [Pa]
+  double error_rest = 0;               // of pressure_rest, by rounding and by what Newton has left [Pa]
+  double error_actuated = 0;           // of pressure_actuated, likewise [Pa]
   double actuation_pressure = 0;       // Eq. (8) at the actuated radius [Pa]
   double electric_field = 0;           // [V/m]
   int iterations = 0;
@@ -30,7 +33,7 @@ struct SliceOutcome {
 
 // Segment result from its slices at the nodes of `rule` over the height. All numbers but the initial volume
 // and the rigid pressures are NaN where a slice has no trustworthy result, the field also where one is pulled
-// in. `quadrature_error` becomes the error estimate.
+// in. `quadrature_error` and the slices' own errors make the error estimate.
 model::SegmentResult summarise(std::span<const SliceOutcome> slices, const Quadrature& rule, double height,
                                double quadrature_error);
 

@@ -19,6 +19,8 @@ struct PackState {
   Pack strain_slope, bandage_slope;         // eps_r'(P); d P_t / d eps, 0 without contact
   Pack low, high;                           // bracket of the pressure; low = -1 until P = 0 has been tried
   Pack rounding;        // pressure at rest, of whose rounding errors an actuated P cannot be rid
+  Pack left;            // error of the pressure that closing leaves, as predicted
+  Pack settled_slope;   // d P_t / d eps where it closed
   Pack smallest_slope;  // least f' seen: near or below 0 there may be several equilibria
   Pack iterations;
   Pack open;    // 1 while the slice is being solved, else 0
@@ -54,5 +56,12 @@ void advance_newton(const SliceShape& shape, const Pack* rows, const Pack& direc
 // when its radius changes by less than `tolerance` times the undeformed one.
 void advance_fixed_point(const SliceShape& shape, const Pack* rows, const Pack& direction, double tolerance,
                          PackState& state);
+
+// Error of the pressure of a closed slice, in units of S: what its last step has left, and rounding, which
+// the equation amplifies where the bandage is nearly slack (the gap cancels), where the voltage takes most of
+// its pressure, and near a limit point (f' is small). `wall_error` of the quadrature through the wall,
+// relative, is amplified in the same way; only what this makes of it beyond itself is added.
+double pressure_error(const SliceSystem& system, std::size_t slice, const PackState& state,
+                      double wall_error);
 
 }  // namespace gaiter::physics

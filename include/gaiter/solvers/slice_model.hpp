@@ -55,7 +55,8 @@ class SliceModel {
   void solve_doubtful(bool at_rest);
   void record(bool at_rest);
   void float_free(std::size_t slice);
-  void finish_actuated();
+  void finish_actuated(bool rigid);
+  void small_drops(std::size_t pack, const physics::Pack& actuation);
   double height_error(const SegmentTask& task, const Task& own, bool rigid);
   double height_error_of_start(const SegmentTask& task, const Task& own, bool rigid);
   const physics::Quadrature& height_rule(model::SliceRule rule, int count);
