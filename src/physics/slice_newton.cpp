@@ -13,6 +13,9 @@ constexpr double epsilon = 2.2e-16;
 constexpr double rounding_caution = 8;  // of an estimate of rounding errors
 // A priori estimates of the quadrature through the wall can be a few times too low where it is almost exact.
 constexpr double wall_caution = 8, smallest_sure_wall_error = 1e-12;
+// Part of the leg's pressure by which the bandage may be below 0 in a state that is called close to
+// equilibrium.
+constexpr double crushing = 1e4;
 constexpr double far =
     4;  // ratio of the bandage's and the leg's pressure beyond which logarithms are compared
 
@@ -127,12 +130,16 @@ void advance_newton(const SliceShape& shape, const Pack* rows, const Pack& direc
     }
   GAITER_EACH {
     const double low = state.low[i], high = state.high[i];
-    const double wanted = low < 0 && trial[i] <= 0 ? 0 : trial[i];
+    const double bandage = state.pressure[i] - state.pressure_residual[i];
+    // Newton's method crawls where the bandage is crushed; whether it touches the leg at all is asked first.
+    const bool crushed = bandage < -crushing * state.pressure[i];
+    const double aim = crushed ? -1 : trial[i];
+    const double wanted = low < 0 && aim <= 0 ? 0 : aim;
     const bool inside = wanted > low && wanted < high;
     const double floor = low > 0 ? low : 0;
     const double middle = low > 0 ? std::sqrt(low * high) : 0.5 * (floor + high);
     const double chosen = inside ? wanted : middle;
-    quadratic[i] = inside && !(remote[i] > 0) ? 1 : 0;
+    quadratic[i] = inside && !crushed && !(remote[i] > 0) ? 1 : 0;
     trial[i] = state.open[i] > 0 ? chosen : state.pressure[i];
   }
 
@@ -158,8 +165,9 @@ void advance_newton(const SliceShape& shape, const Pack* rows, const Pack& direc
     const double rounding = std::fabs(bandage[i]) + state.rounding[i];
     const double noise = 2 * epsilon * (trial[i] + rounding / (slope > 1 ? slope : 1));
     const bool collapsed = high - low <= 2 * epsilon * high;
+    const bool near = !(bandage[i] < -crushing * trial[i]);
     const bool closing =
-        residual == 0 || (slope > 0 && (error <= tolerance * trial[i] || next <= noise)) || collapsed;
+        residual == 0 || (near && slope > 0 && (error <= tolerance * trial[i] || next <= noise)) || collapsed;
     const double polished = trial[i] - residual / slope;
     // A slice that closes on the error after this last step must take it, to the end of its bracket if need
     // be.
