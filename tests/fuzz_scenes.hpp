@@ -185,6 +185,8 @@ inline Words command_line(Draw& draw, bool with_axisym) {
         value_of(draw, option);
   }
   if (!given.contains("slice_count") || given["slice_count"].size() > 3) given["slice_count"] = "6";
+  // Allowed, but minutes long.
+  if (given.contains("sliding_count") && given["sliding_count"].size() > 3) given["sliding_count"] = "24";
   std::vector<std::pair<std::string, std::string>> all(given.begin(), given.end());
   // Something wrong in every third.
   while (draw.chance(0.3)) {

@@ -12,7 +12,7 @@ namespace {
 constexpr double epsilon = 2.2e-16;
 constexpr double rounding_caution = 8;  // of an estimate of rounding errors
 // A priori estimates of the quadrature through the wall can be a few times too low where it is almost exact.
-constexpr double wall_caution = 8, smallest_sure_wall_error = 1e-12;
+constexpr double wall_caution = 16, smallest_sure_wall_error = 1e-12;
 // Part of the leg's pressure by which the bandage may be below 0 in a state that is called close to
 // equilibrium.
 constexpr double crushing = 1e4;
