@@ -23,3 +23,8 @@ set_tests_properties(tradeoff PROPERTIES PROCESSORS 2)
 gaiter_add_test(architecture LABEL architecture
                 COMMAND ${GAITER_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/architecture.py $<TARGET_FILE:gaiter>
                         ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR} ${CMAKE_CTEST_COMMAND})
+
+# Random command lines; by hand `build/bin/fuzz --scenes 30000`.
+add_executable(fuzz fuzz.cpp)
+target_link_libraries(fuzz PRIVATE gaiter_studies Boost::headers)
+gaiter_add_test(fuzz LABEL command_line TIMEOUT 600 COMMAND $<TARGET_FILE:fuzz> --scenes 600)

@@ -99,10 +99,15 @@ std::string with_number(const SweepAxis& axis, double number) {
 TEST(Designs, EverySweepableNumberSetsWhatTheOptionItselfSets) {
   // Two values that each option admits; 3 and 4 will do for the others.
   const std::map<std::string_view, std::pair<std::string, std::string>> pairs = {
-      {"bandage_<s>_length", {"13 cm", "14 cm"}}, {"bandage_<s>_stretch", {"1.3", "1.7"}},
-      {"bandage_thickness", {"2 mm", "3 mm"}},    {"leg_<s>_height", {"2 cm", "3 cm"}},
-      {"leg_<s>_radius", {"46 mm", "47 mm"}},     {"leg_poisson", {"0.1", "0.2"}},
-      {"leg_radius_scale", {"1.1", "1.2"}},       {"slice_fixed_point_tolerance", {"1e-3", "2e-3"}}};
+      {"accuracy", {"1e-2", "2e-2"}},
+      {"bandage_<s>_length", {"13 cm", "14 cm"}},
+      {"bandage_<s>_stretch", {"1.3", "1.7"}},
+      {"bandage_thickness", {"2 mm", "3 mm"}},
+      {"leg_<s>_height", {"2 cm", "3 cm"}},
+      {"leg_<s>_radius", {"46 mm", "47 mm"}},
+      {"leg_poisson", {"0.1", "0.2"}},
+      {"leg_radius_scale", {"1.1", "1.2"}},
+      {"slice_fixed_point_tolerance", {"1e-3", "2e-3"}}};
   const std::map<std::string, std::pair<std::string, std::string>> compliance = {
       {"a", {"0.02", "0.03"}}, {"c", {"-0.02", "-0.03"}}, {"d", {"-1e-3", "-2e-3"}}};
   std::set<std::string> outcomes;
@@ -181,7 +186,7 @@ TEST(Sweep, ResolvedTextGivesTheSameSweepAgain) {
 
 TEST(Sweep, ErrorsNameOptionAndValue) {
   const std::vector<std::tuple<Given, std::vector<std::string>>> cases = {
-      {{{"sweep_bandage_stretch", "1.4,0"}}, {"-sweep_bandage_stretch '1.4,0'", "value 2", "greater than 0"}},
+      {{{"sweep_bandage_stretch", "1.4,0"}}, {"-sweep_bandage_stretch '1.4,0'", "value 2", "at least 0.001"}},
       {{{"sweep_bandage_stretch", ""}}, {"-sweep_bandage_stretch ''", "a value is missing"}},
       {{{"sweep_bandage_stretch", "1.4 Pa"}}, {"'Pa'", "plain number"}},
       {{{"sweep_leg_low_radius", "1,2"}},

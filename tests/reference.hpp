@@ -287,7 +287,7 @@ inline std::optional<Real> floating_radius(const Tube& tube, Real voltage, Real 
     return T(mechanical_pressure<T>(tube, radius) -
              T(voltage) * T(voltage) * unit_actuation<T>(tube, radius));
   };
-  const auto at = [&](int k) { return Real(start * exp(Real(5) * k / points)); };
+  const auto at = [&](int k) { return Real(start * exp(Real(9) * k / points)); };
   for (int k = 1; k <= points; ++k)
     if (positive(pull, at(k), mechanical_pressure<Quick>(tube, Quick(at(k)))))
       return root<Real>(pull, at(k - 1), at(k));
@@ -296,8 +296,9 @@ inline std::optional<Real> floating_radius(const Tube& tube, Real voltage, Real 
 
 // What a slice should come to.
 struct Expected {
-  Real rest = 0, actuated = 0;  // pressures [Pa]
-  Real bandage_radius = 0;      // under voltage; 0: pulled in [m]
+  Real rest = 0, actuated = 0;             // pressures [Pa]
+  Real rest_parameter = 0, parameter = 0;  // of the leg, at rest and under voltage; 0: no contact
+  Real bandage_radius = 0;                 // under voltage; 0: pulled in [m]
   model::Status status = model::Status::contact;
 };
 
@@ -311,11 +312,13 @@ inline Expected expectation(const Slice& slice, bool stiffens, int points) {
   if (high > 0 && balance(0) < 0)
     parameter = stiffens ? root<Real>(balance, 0, high) : *first_change(slice, 0, 0, high, false, points);
   if (parameter > 0) result.rest = leg_at<Real>(slice, parameter).pressure;
+  result.rest_parameter = parameter;
   if (parameter == 0) result.status = model::Status::slack;
   if (parameter > 0 && slice.voltage > 0) {
     parameter = first_change(slice, slice.voltage, parameter, 0, true, points).value_or(0);
     if (parameter == 0) result.status = model::Status::lifted;
   }
+  result.parameter = parameter;
   const Point<Real> point = leg_at<Real>(slice, parameter);
   result.actuated = parameter > 0 ? point.pressure : Real(0);
   result.bandage_radius = parameter > 0 ? point.radius : std::max(point.radius, slice.tube.inner);

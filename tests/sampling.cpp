@@ -202,7 +202,7 @@ TEST(Sampling, ErrorsNameOptionValueAndWhatIsAllowed) {
   const std::vector<std::pair<Given, std::vector<std::string>>> cases = {
       {{{"sweep_bandage_stretch", "linspace(1,2)"}},
        {"-sweep_bandage_stretch 'linspace(1,2)'", "3 arguments"}},
-      {{{"sweep_bandage_stretch", "linspace(0,2,5)"}}, {"first end is out of range", "greater than 0"}},
+      {{{"sweep_bandage_stretch", "linspace(0,2,5)"}}, {"first end is out of range", "at least 0.001"}},
       {{{"sweep_bandage_stretch", "linspace(1,2,0)"}}, {"'0' is no whole number of at least 1"}},
       {{{"sweep_bandage_stretch", "linspaced(1,2,5)"}}, {"neither a list nor a law", "logspace(lo,hi,n)"}},
       {{{"sweep_voltage", "logspace(0,1,5)"}}, {"both ends must be greater than 0"}},

@@ -37,7 +37,7 @@ CASES = {
     "too large for a number": (["solve", *SCENE, "-voltage", "1e999 V"], ["-voltage", "1e999"]),
     "negative thickness": (["solve", *SCENE, "-bandage_thickness", "-1 mm"],
                            ["-bandage_thickness", "'-1 mm'", "at least 1e-10 m"]),
-    "stretch 0": (["solve", *SCENE, "-bandage_stretch", "0"], ["-bandage_stretch", "'0'", "greater than 0"]),
+    "stretch 0": (["solve", *SCENE, "-bandage_stretch", "0"], ["-bandage_stretch", "'0'", "at least 0.001"]),
     "list too long": (["solve", *SCENE, "-leg_r6_radius", "1 mm,2 mm,3 mm"], ["-leg_r6_radius", "3 values", "2 values"]),
     "list too short": (["solve", *SCENE, "-leg_r6_compliance", "0.01,1e-5"], ["-leg_r6_compliance", "4 values"]),
     "unequal lists": (["solve", *SCENE, "-bandage_ogden_mu", "20 kPa"], ["-bandage_ogden_mu", "-bandage_ogden_alpha"]),
@@ -76,7 +76,7 @@ CASES = {
     "sweep in solve": (["solve", *SCENE, "-sweep_bandage_stretch", "1,2"], ["-sweep_bandage_stretch", "sweep"]),
     "not to be swept": (["sweep", *SCENE, "-sweep_slice_rule", "gauss,midpoint"], ["-sweep_slice_rule", "cannot be swept"]),
     "one bad value of a sweep": (["sweep", *SCENE, "-sweep_bandage_stretch", "1.4,0"],
-                                 ["-sweep_bandage_stretch", "1.4,0", "value 2", "greater than 0"]),
+                                 ["-sweep_bandage_stretch", "1.4,0", "value 2", "at least 0.001"]),
     "one bad design of a sweep": (["sweep", *SCENE, "-sweep_bandage_thickness", "1 mm,30 mm"], ["-bandage_thickness"]),
     # files
     "options file missing": (["solve", "-options_file", "nowhere.yaml"], ["-options_file", "nowhere.yaml"]),

@@ -9,7 +9,8 @@ namespace gaiter::physics {
 
 namespace {
 
-constexpr int deepest = 9;  // 63^-9 of a path: nothing finer can be told apart
+constexpr int deepest = 9;          // 63^-9 of a path: nothing finer can be told apart
+constexpr double largest_rise = 4;  // of a hump between two points over that of a tangent, with caution
 
 void spread(double from, double to, Pack& points) {
   for (int i = 0; i < pack_width; ++i) points[i] = from + (to - from) * i / (pack_width - 1);
@@ -29,6 +30,11 @@ std::optional<Interval> first_crossing(const Balance& balance, double from, doub
     const bool crosses = value[i] >= 0;
     const bool approaches = direction * slope[i - 1] > 0 && direction * slope[i] < 0;
     if (!crosses && !approaches) continue;
+    // What is still far from 0 does not get there between two close points; rounding alone makes such humps,
+    // and there is no end to them.
+    const double rise =
+        std::fmax(std::fabs(slope[i - 1]), std::fabs(slope[i])) * std::fabs(points[i] - points[i - 1]);
+    if (!crosses && depth > 0 && std::fmax(value[i - 1], value[i]) + largest_rise * rise < 0) continue;
     if (depth < (crosses ? 1 : deepest))
       if (auto inner = first_crossing(balance, points[i - 1], points[i], depth + 1)) return inner;
     if (crosses) return Interval{points[i - 1], points[i]};

@@ -53,7 +53,7 @@ SegmentNumbers segment_numbers(const model::Scene& scene, std::size_t segment) {
   numbers.layers = bandage.layers;
   numbers.stiffens = has_only_stiffening_terms(bandage) ? 1 : 0;
   numbers.wall_points = scene.discretisation.wall_points;
-  numbers.wall_error = 0;
+  numbers.wall_error = numbers.passive_wall_error = 0;
   return numbers;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-2-Clause
 #include "gaiter/physics/segment_summary.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -25,6 +26,9 @@ void SegmentSummary::add(const SliceOutcomes& slice, const Pack& weights) {
     rest_[i] += weights[i] * slice.pressure_rest[i];
     actuated_[i] += weights[i] * slice.pressure_actuated[i];
     actuation_[i] += weights[i] * slice.actuation_pressure[i];
+    drop_[i] += weights[i] * slice.actuation_drop[i];
+    rest_error_[i] += weights[i] * slice.error_rest[i];
+    actuated_error_[i] += weights[i] * slice.error_actuated[i];
   }
   GAITER_EACH {
     rest_force_[i] += weights[i] * slice.pressure_rest[i] * slice.radius_rest[i];
@@ -74,6 +78,7 @@ model::SegmentResult SegmentSummary::result(int i, double quadrature_error) cons
   result.pressure_rest_area_mean = rest_force_[i];
   result.pressure_actuated_area_mean = actuated_force_[i];
   model::derive_changes(result);
+  result.actuation_drop = drop_[i];
   result.actuation_pressure = actuation_[i];
   result.volume_rest = volume_rest_[i];
   result.volume_actuated = volume_actuated_[i];
@@ -81,7 +86,9 @@ model::SegmentResult SegmentSummary::result(int i, double quadrature_error) cons
   result.radius_actuated = radius_[i];
   result.stretch_actual = stretch_[i];
   result.electric_field_max = status == model::Status::pulled_in ? none : field_[i];
-  result.discretisation_error = quadrature_error;
+  const auto relative = [](double error, double pressure) { return pressure > 0 ? error / pressure : 0; };
+  result.discretisation_error = quadrature_error + std::max(relative(rest_error_[i], rest_[i]),
+                                                            relative(actuated_error_[i], actuated_[i]));
   model::derive_error(result);
   return result;
 }

@@ -7,7 +7,7 @@ namespace {
 
 constexpr double largest_exponent = 300;  // of lambda^alpha; products of two such stay finite
 constexpr double largest_pressure = 1e100;
-constexpr double smallest_radius = 1e-12;  // over A
+constexpr double smallest_radius = 1e-6;  // over A; its square is still told from 0 beside 1
 
 // The fixed-count loops below are the vectorised ones.
 #define GAITER_EACH for (int i = 0; i < pack_width; ++i)

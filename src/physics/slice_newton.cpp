@@ -8,6 +8,12 @@ namespace gaiter::physics {
 namespace {
 
 constexpr double epsilon = 2.2e-16;
+constexpr double rounding_caution = 8;  // of an estimate of rounding errors
+// A priori estimates of the quadrature through the wall can be a few times too low where it is almost exact.
+constexpr double wall_caution = 16, smallest_sure_wall_error = 1e-12;
+// Part of the leg's pressure by which the bandage may be below 0 in a state that is called close to
+// equilibrium.
+constexpr double crushing = 1e4;
 constexpr double far =
     4;  // ratio of the bandage's and the leg's pressure beyond which logarithms are compared
 
@@ -28,7 +34,7 @@ inline __attribute__((always_inline)) void initialise(PackState& state) {
   GAITER_EACH {
     state.low[i] = -1;
     state.smallest_slope[i] = 1;
-    state.iterations[i] = state.failed[i] = 0;
+    state.iterations[i] = state.failed[i] = state.left[i] = 0;
     state.open[i] = 1;
   }
 }
@@ -55,6 +61,7 @@ void start_at_rest(const SliceShape& shape, const Pack* rows, PackState& state, 
   GAITER_EACH {
     const double k = rigid_pressure[i] > 0 ? -rigid_slope[i] / rigid_pressure[i] : 0;
     const double pressure = state.pressure[i];
+    state.settled_slope[i] = rigid_slope[i];
     const double step = -pressure * k * state.strain[i] / (1 + pressure * k * state.strain_slope[i]);
     const double moved = pressure + step > 0 ? pressure + step : 0.5 * pressure;
     const double kept = capped[i] > 0 || moved >= limit[i] ? pressure : moved;
@@ -81,6 +88,7 @@ void start_actuated(const SliceShape& shape, const Pack* rows, PackState& state)
 void start_fixed_point(bool at_rest, PackState& state) {
   initialise(state);
   if (at_rest) GAITER_EACH state.strain[i] = state.pressure[i] = 0;
+  GAITER_EACH state.rounding[i] = state.pressure[i];
 }
 
 GAITER_MULTIVERSION
@@ -138,12 +146,16 @@ void advance_newton(const SliceShape& shape, const Pack* rows, const Pack& direc
     }
   GAITER_EACH {
     const double low = state.low[i], high = state.high[i];
-    const double wanted = low < 0 && trial[i] <= 0 ? 0 : trial[i];
+    const double bandage = state.pressure[i] - state.pressure_residual[i];
+    // Newton's method crawls where the bandage is crushed; whether it touches the leg at all is asked first.
+    const bool crushed = bandage < -crushing * state.pressure[i];
+    const double aim = crushed ? -1 : trial[i];
+    const double wanted = low < 0 && aim <= 0 ? 0 : aim;
     const bool inside = wanted > low && wanted < high;
     const double floor = low > 0 ? low : 0;
     const double middle = low > 0 ? std::sqrt(low * high) : 0.5 * (floor + high);
     const double chosen = inside ? wanted : middle;
-    quadratic[i] = inside && !(remote[i] > 0) ? 1 : 0;
+    quadratic[i] = inside && !crushed && !(remote[i] > 0) ? 1 : 0;
     trial[i] = state.open[i] > 0 ? chosen : state.pressure[i];
   }
 
@@ -169,8 +181,9 @@ void advance_newton(const SliceShape& shape, const Pack* rows, const Pack& direc
     const double rounding = std::fabs(bandage[i]) + state.rounding[i];
     const double noise = 2 * epsilon * (trial[i] + rounding / (slope > 1 ? slope : 1));
     const bool collapsed = high - low <= 2 * epsilon * high;
+    const bool near = !(bandage[i] < -crushing * trial[i]);
     const bool closing =
-        residual == 0 || (slope > 0 && (error <= tolerance * trial[i] || next <= noise)) || collapsed;
+        residual == 0 || (near && slope > 0 && (error <= tolerance * trial[i] || next <= noise)) || collapsed;
     const double polished = trial[i] - residual / slope;
     // A slice that closes on the error after this last step must take it, to the end of its bracket if need
     // be.
@@ -187,6 +200,9 @@ void advance_newton(const SliceShape& shape, const Pack* rows, const Pack& direc
     state.low[i] = open ? low : state.low[i];
     state.high[i] = open ? high : state.high[i];
     state.smallest_slope[i] = open && slope < state.smallest_slope[i] ? slope : state.smallest_slope[i];
+    const double missed = slope > 0 ? next : high - low;
+    state.left[i] = open && closing ? (polish ? error : missed) : state.left[i];
+    state.settled_slope[i] = open ? steep : state.settled_slope[i];
     state.iterations[i] += state.open[i];
     state.open[i] = open && !closing ? 1 : 0;
   }
@@ -214,8 +230,37 @@ void advance_fixed_point(const SliceShape& shape, const Pack* rows, const Pack& 
   }
   evaluate_residual(shape, rows, state);
   GAITER_EACH {
+    // What Newton's next step would still change.
+    const double next = std::fabs(state.pressure_residual[i] / scalar_slope(state, i));
+    state.left[i] = state.open[i] > 0 ? next : state.left[i];
+    state.settled_slope[i] = state.open[i] > 0 ? state.bandage_slope[i] : state.settled_slope[i];
     state.iterations[i] += state.open[i];
     state.open[i] = state.open[i] > 0 && !(state.failed[i] > 0) && change[i] >= tolerance ? 1 : 0;
+  }
+}
+
+GAITER_MULTIVERSION
+void pressure_error(const SliceShape& shape, const Pack* rows, const PackState& state, const Pack& wall_error,
+                    const Pack& passive_wall_error, PressureError& error) {
+  const double law = shape.material == model::LegMaterial::compliance ? 1 : 0;
+  const Pack &gap = rows[SliceShape::gap], &radius = rows[SliceShape::leg_radius],
+             &leg = rows[SliceShape::leg_1];
+  GAITER_EACH {
+    const double pressure = state.pressure[i];
+    // Strain at which the bandage is slack, and the largest part of the leg's strain.
+    const double strain =
+        std::fabs(gap[i] / radius[i]) + std::fabs(state.strain[i]) + law * std::fabs(leg[i]);
+    const double steep = state.settled_slope[i];
+    const double flat = std::fabs(1 - steep * state.strain_slope[i]);
+    const double slope = flat > epsilon ? flat : epsilon;
+    const double passive = (pressure + state.rounding[i]) / slope;
+    const double bandage = 2 * passive + std::fabs(steep) * strain / slope;
+    const double excess = passive > pressure ? passive - pressure : 0;
+    const double sure = wall_error[i] < smallest_sure_wall_error ? wall_error[i] : smallest_sure_wall_error;
+    const double wall = passive_wall_error[i] * excess + wall_caution * sure * passive;
+    const double solution = state.left[i] + rounding_caution * epsilon * (pressure + bandage);
+    error.wall[i] = pressure > 0 ? wall : 0;
+    error.solution[i] = pressure > 0 ? solution : 0;
   }
 }
 

@@ -19,10 +19,18 @@ inline double larger(double a, double b) {
   return a < b ? b : a;
 }
 
-// The actuated state; returns nothing else than what both states share.
-inline __attribute__((always_inline)) void record(const Pack* rows, const PackState& state,
-                                                  const Pack& data_limit, SliceOutcomes& outcomes) {
-  const Pack& scale = rows[SliceShape::pressure_scale];
+// The actuated state: what both states share.
+inline __attribute__((always_inline)) void record(const SliceShape& shape, const Pack* rows,
+                                                  const SegmentConstants<Pack>& segments, PackState& state,
+                                                  SliceOutcomes& outcomes) {
+  const Pack &scale = rows[SliceShape::pressure_scale], &data_limit = segments.data_limit;
+  leg_strain(shape, rows, state.pressure, state.strain, state.strain_slope);
+  PressureError error;
+  pressure_error(shape, rows, state, segments.wall_error, segments.passive_wall_error, error);
+  GAITER_EACH {
+    outcomes.error_of_difference[i] += error.solution[i] * scale[i];
+    outcomes.error_actuated[i] = (error.solution[i] + error.wall[i]) * scale[i];
+  }
   GAITER_EACH {
     const double pressure = state.pressure[i] * scale[i];
     const double radius = outcomes.leg_radius[i] * (1 - state.strain[i]);
@@ -47,6 +55,8 @@ void record_rigid(const Pack* rows, const Pack& at_rest, const Pack& relief, Sli
   GAITER_EACH {
     outcomes.pressure_rest_rigid[i] = larger(0, at_rest[i]) * scale[i];
     outcomes.pressure_actuated_rigid[i] = larger(0, at_rest[i] - relief[i]) * scale[i];
+    const double pressing = larger(0, at_rest[i]);
+    outcomes.actuation_drop[i] = (relief[i] < pressing ? relief[i] : pressing) * scale[i];
   }
 }
 
@@ -66,8 +76,10 @@ void adopt_rigid(SliceOutcomes& outcomes) {
 }
 
 GAITER_MULTIVERSION
-void record_rest(const Pack* rows, const PackState& state, const Pack& data_limit, SliceOutcomes& outcomes) {
-  record(rows, state, data_limit, outcomes);
+void record_rest(const SliceShape& shape, const Pack* rows, const SegmentConstants<Pack>& segments,
+                 PackState& state, SliceOutcomes& outcomes) {
+  record(shape, rows, segments, state, outcomes);
+  outcomes.error_rest = outcomes.error_actuated;
   outcomes.pressure_rest = outcomes.pressure_actuated;
   outcomes.radius_rest = outcomes.radius_actuated;
   outcomes.bandage_radius_rest = outcomes.bandage_radius_actuated;
@@ -78,9 +90,10 @@ void record_rest(const Pack* rows, const PackState& state, const Pack& data_limi
 }
 
 GAITER_MULTIVERSION
-void record_actuated(const Pack* rows, const PackState& state, const Pack& data_limit,
-                     SliceOutcomes& outcomes) {
-  record(rows, state, data_limit, outcomes);
+void record_actuated(const SliceShape& shape, const Pack* rows, const SegmentConstants<Pack>& segments,
+                     PackState& state, SliceOutcomes& outcomes) {
+  record(shape, rows, segments, state, outcomes);
+  GAITER_EACH outcomes.actuation_drop[i] = outcomes.pressure_rest[i] - outcomes.pressure_actuated[i];
 }
 
 GAITER_MULTIVERSION

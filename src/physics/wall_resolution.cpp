@@ -87,7 +87,7 @@ void choose_wall_points(std::span<SegmentNumbers> segments, double tolerance) {
     choose(walls, tolerance);
     for (std::size_t i = 0; i < these.size(); ++i) {
       these[i].wall_points = walls.points[static_cast<int>(i)];
-      these[i].wall_error = walls.error[static_cast<int>(i)];
+      these[i].wall_error = these[i].passive_wall_error = walls.error[static_cast<int>(i)];
     }
   }
 }

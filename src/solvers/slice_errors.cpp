@@ -89,8 +89,10 @@ double SliceModel::model_error(std::size_t task, model::Fidelity fidelity) const
   const bool known = scene.leg.material != model::LegMaterial::compliance ||
                      scene.leg.segments[tasks_[task].segment].compliance.b > 0;
   if (!known) return std::numeric_limits<double>::quiet_NaN();
-  return sliding +
-         (fidelity == model::Fidelity::rigid ? forecast.compliance_error() : forecast.first_order_error());
+  const double error = sliding + (fidelity == model::Fidelity::rigid ? forecast.compliance_error()
+                                                                     : forecast.first_order_error());
+  // A leg that gives way may feel nothing at all, and no multiple of that is the error.
+  return std::isfinite(error) ? error : std::numeric_limits<double>::quiet_NaN();
 }
 
 // Of the tasks left, from the average of the starting values, which are close to the pressures.

@@ -75,11 +75,17 @@ void SliceModel::take(std::span<const SegmentTask> tasks) {
   newton_ = petsc::agree(comm_, all_newton);
   forecast();
   if (forecasts_.size() == tasks.size()) physics::choose_wall_points(numbers_, wall_tolerance);
-  for (std::size_t t = 0; t < tasks.size(); ++t)
-    if (tasks[t].plan)
-      numbers_[t].wall_error = tasks[t].plan->wall_error;
-    else if (const int points = tasks[t].scene->discretisation.wall_points; points > 0)
-      numbers_[t].wall_error = forecasts_[t].wall_error(points);
+  for (std::size_t t = 0; t < tasks.size(); ++t) {
+    const int points = tasks[t].scene->discretisation.wall_points;
+    if (!tasks[t].plan && points == 0) continue;
+    physics::SegmentNumbers& numbers = numbers_[t];
+    numbers.wall_error = tasks[t].plan ? tasks[t].plan->wall_error : forecasts_[t].wall_error(points);
+    numbers.passive_wall_error = 0;  // the forecast is that of the pressure in equilibrium
+    // Where it expects no pressure, the estimate for the passive one remains.
+    if (!std::isfinite(numbers.wall_error))
+      numbers.wall_error = numbers.passive_wall_error =
+          physics::wall_error(*tasks[t].scene, tasks[t].segment, static_cast<int>(numbers.wall_points));
+  }
   arrange();
   double most_points = 1;
   for (const auto& numbers : numbers_) most_points = std::max(most_points, numbers.wall_points);
@@ -125,8 +131,8 @@ void SliceModel::arrange() {
         if (++blocks > blocks_.size()) blocks_.emplace_back();
         Block& block = blocks_[blocks - 1];
         before = counts;
-        const model::SliceRule rule = tasks_[task].plan ? model::SliceRule::gauss
-                                                        : tasks_[task].scene->discretisation.slice_rule;
+        const model::SliceRule rule =
+            tasks_[task].plan ? model::SliceRule::gauss : tasks_[task].scene->discretisation.slice_rule;
         block.first_pack = packs;
         block.rule = &height_rule(rule, counts.slices);
         block.pieces = counts.pieces;
@@ -209,12 +215,11 @@ void SliceModel::solve_first_order() {
       Pack pressure;
       physics::start_at_rest(system_.shape(), system_.pack(k), states_[k], pressure);
       for (int i = 0; i < pack_width; ++i) states_[k].open[i] = 0;
-      const Pack& limit = block.segments.constants.data_limit;
       if (at_rest) {
         rigid_pressure_[k] = pressure;
-        physics::record_rest(system_.pack(k), states_[k], limit, outcomes_[k]);
+        record_rest(block, k);
       } else {
-        physics::record_actuated(system_.pack(k), states_[k], limit, outcomes_[k]);
+        record_actuated(block, k);
       }
     });
     if (at_rest) rigid_pressures();
@@ -242,10 +247,11 @@ std::span<const model::SegmentResult> SliceModel::solve(std::span<const SegmentT
     if (energised_) actuate();
   }
   system_.energise(true);
-  if (energised_) finish_actuated();
-  summarise(rigid         ? model::Fidelity::rigid
-            : first_order ? model::Fidelity::first_order
-                          : model::Fidelity::slice);
+  const model::Fidelity fidelity = rigid         ? model::Fidelity::rigid
+                                   : first_order ? model::Fidelity::first_order
+                                                 : model::Fidelity::slice;
+  if (energised_) finish_actuated(fidelity);
+  summarise(fidelity);
   return results_;
 }
 

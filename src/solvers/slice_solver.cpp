@@ -299,6 +299,10 @@ void SliceSolver::close_small_steps(Totals& totals) {
     physics::solve_blocks(state.strain_slope, state.bandage_slope, state.strain_residual,
                           state.pressure_residual, strain, pressure);
     for (int i = 0; i < pack_width; ++i) {
+      if (state.open[i] > 0) {
+        state.left[i] = std::fabs(pressure[i]);
+        state.settled_slope[i] = state.bandage_slope[i];
+      }
       if (std::fabs(pressure[i]) <= tolerance_ * std::fabs(state.pressure[i])) state.open[i] = 0;
       state.iterations[i] += state.open[i];
     }

@@ -22,6 +22,10 @@ namespace {
 // f' of the scalar equation of a slice: 1 for a bandage that does not stiffen or soften with the leg's
 // radius. Below this there may be a limit point near by, and the equilibrium is searched for along the path.
 constexpr double doubtful_slope = 0.5;
+constexpr double small_actuation =
+    0.1;  // of the pressure at rest: a part of the path that few points resolve
+constexpr double error_of_drop = 1e-12;  // relative, for which its difference of pressures is good enough
+constexpr int points_of_drop = 4;        // of the mean slope on this part
 
 }  // namespace
 
@@ -38,9 +42,7 @@ void SliceModel::rest() {
     }
   });
   if (newton_) solve_doubtful(true);
-  each_pack([&](const Block& block, std::size_t k) {
-    physics::record_rest(system_.pack(k), states_[k], block.segments.constants.data_limit, outcomes_[k]);
-  });
+  each_pack([&](const Block& block, std::size_t k) { record_rest(block, k); });
 }
 
 void SliceModel::actuate() {
@@ -62,9 +64,7 @@ void SliceModel::actuate() {
   solver_->solve(
       system_, states_, [](std::size_t) {}, newton_ ? First::known : First::evaluated);
   if (newton_) solve_doubtful(false);
-  each_pack([&](const Block& block, std::size_t k) {
-    physics::record_actuated(system_.pack(k), states_[k], block.segments.constants.data_limit, outcomes_[k]);
-  });
+  each_pack([&](const Block& block, std::size_t k) { record_actuated(block, k); });
 }
 
 // Slices whose equation was, somewhere on the way, too flat for Newton's root to be surely the one that the
@@ -101,6 +101,15 @@ void SliceModel::solve_doubtful(bool at_rest) {
   });
 }
 
+void SliceModel::record_rest(const Block& block, std::size_t k) {
+  physics::record_rest(system_.shape(), system_.pack(k), block.segments.constants, states_[k], outcomes_[k]);
+}
+
+void SliceModel::record_actuated(const Block& block, std::size_t k) {
+  physics::record_actuated(system_.shape(), system_.pack(k), block.segments.constants, states_[k],
+                           outcomes_[k]);
+}
+
 // Slices of a pack that do not touch the leg under voltage: the bandage's own equilibrium, if it has one.
 void SliceModel::float_free(const Block& block, std::size_t pack) {
   SliceOutcomes& outcomes = outcomes_[pack];
@@ -118,11 +127,42 @@ void SliceModel::float_free(const Block& block, std::size_t pack) {
 }
 
 // What needs the actuated radius of the bandage: lift-off, actuation pressure, field.
-void SliceModel::finish_actuated() {
+void SliceModel::finish_actuated(model::Fidelity fidelity) {
   each_pack([&](const Block& block, std::size_t k) {
     float_free(block, k);
     physics::record_loads(system_.shape(), system_.pack(k), block.segments.constants.voltage, outcomes_[k]);
+    if (fidelity == model::Fidelity::slice) small_drops(k);
   });
+}
+
+// A drop that is small beside the pressures, whose difference would have few of its digits: that of the
+// residual at rest between the two states, which is the actuation pressure, over its mean slope.
+void SliceModel::small_drops(std::size_t k) {
+  SliceOutcomes& outcomes = outcomes_[k];
+  int small[pack_width], any = 0;
+  for (int i = 0; i < pack_width; ++i) {
+    small[i] = outcomes.pressure_actuated[i] > 0 &&
+               outcomes.actuation_pressure[i] < small_actuation * outcomes.pressure_rest[i] &&
+               outcomes.error_of_difference[i] > error_of_drop * outcomes.actuation_drop[i];
+    any |= small[i];
+  }
+  if (!any) return;
+  const physics::Quadrature& gauss = wall_rule(points_of_drop);
+  system_.energise(false);
+  Pack mean_slope{};
+  for (std::size_t point = 0; point < gauss.nodes.size(); ++point) {
+    const double share = gauss.nodes[point];
+    Pack pressure, strain, strain_slope, bandage, bandage_slope;
+    for (int i = 0; i < pack_width; ++i)
+      pressure[i] = share * rest_pressure_[k][i] + (1 - share) * states_[k].pressure[i];
+    physics::leg_strain(system_.shape(), system_.pack(k), pressure, strain, strain_slope);
+    physics::bandage_pressure(system_.shape(), system_.pack(k), strain, bandage, bandage_slope);
+    for (int i = 0; i < pack_width; ++i)
+      mean_slope[i] += gauss.weights[point] * (1 - bandage_slope[i] * strain_slope[i]);
+  }
+  system_.energise(true);
+  for (int i = 0; i < pack_width; ++i)
+    if (small[i]) outcomes.actuation_drop[i] = outcomes.actuation_pressure[i] / mean_slope[i];
 }
 
 }  // namespace gaiter::solvers

@@ -14,7 +14,7 @@ using Values = std::span<const double>;
 
 // The ranges keep out slips of unit and sign; they admit every extreme the solver is tested at.
 constexpr Range radii{.low = 1e-4, .high = 10};
-constexpr Range stretches{.low = 0, .high = 20, .low_open = true};
+constexpr Range stretches{.low = 1e-3, .high = 20};
 constexpr Range scales{.low = 0.01, .high = 100};
 constexpr Range voltages{.low = 0, .high = 1e9};
 constexpr Range positive{.low = 0, .low_open = true, .high_open = true};

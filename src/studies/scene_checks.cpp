@@ -57,6 +57,14 @@ void check_scene(const model::Scene& scene) {
                       bandage.thickness, segment.name, size, radius, radius * bandage.thickness / inside));
     }
     const model::Compliance& law = segment.compliance;
+    const bool swells = scene.leg.variant == model::ComplianceVariant::published;
+    if (swells && law.a + law.c >= 1) {
+      throw InputError(
+          fmt::format("-leg_{}_compliance '{}, {} Pa-1, {}, {} Pa-1' (after -leg_compliance_scale '{}'): a + "
+                      "c, the strain "
+                      "at no pressure, must be less than 1",
+                      segment.name, law.a, law.b, law.c, law.d, scene.leg.compliance_scale));
+    }
     if (law.a + law.c <= -1) {
       throw InputError(
           fmt::format("-leg_{}_compliance '{}, {} Pa-1, {}, {} Pa-1': a + c must be greater than -1",

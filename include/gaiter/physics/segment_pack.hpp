@@ -22,9 +22,10 @@ struct SegmentConstants {
   Number gap;                                 // mean leg radius less the inner radius of the wall [m]
   Number steepest;                            // largest |alpha| of the Ogden terms
   Number voltage, permittivity, layers;
-  Number stiffens;     // 1: without voltage there is one equilibrium, else 0
-  Number wall_points;  // Gauss points through the wall; 0: to be chosen
-  Number wall_error;   // of the quadrature through the wall, relative
+  Number stiffens;            // 1: without voltage there is one equilibrium, else 0
+  Number wall_points;         // Gauss points through the wall; 0: to be chosen
+  Number wall_error;          // of the quadrature through the wall, relative
+  Number passive_wall_error;  // the same, where it does not yet tell what the equilibrium makes of it, else 0
 };
 
 using SegmentNumbers = SegmentConstants<double>;

@@ -17,7 +17,8 @@ class SegmentSummary {
                  const SegmentPack& segments);
 
   // Of one segment. All numbers but the initial volume and the rigid pressures are NaN where a slice has no
-  // trustworthy result, the field also where one is pulled in. `quadrature_error` becomes the discretisation error.
+  // trustworthy result, the field also where one is pulled in. `quadrature_error` and the slices' own errors
+  // make the discretisation error.
   model::SegmentResult result(int place, double quadrature_error) const;
 
  private:
@@ -26,7 +27,8 @@ class SegmentSummary {
 
   Pack status_{}, iterations_{}, field_{};
   Pack rest_rigid_{}, actuated_rigid_{}, rest_{}, actuated_{}, actuation_{};  // pressures
-  Pack rest_force_{}, actuated_force_{}, rest_area_{}, actuated_area_{};      // over 2 pi, a height
+  Pack drop_{}, rest_error_{}, actuated_error_{};
+  Pack rest_force_{}, actuated_force_{}, rest_area_{}, actuated_area_{};  // over 2 pi, a height
   Pack volume_initial_{}, volume_rest_{}, volume_actuated_{}, volume_change_{};
   Pack radius_{}, stretch_{};
 };

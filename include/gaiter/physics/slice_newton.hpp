@@ -19,6 +19,8 @@ struct PackState {
   Pack strain_slope, bandage_slope;         // eps_r'(P); d P_t / d eps, 0 without contact
   Pack low, high;                           // bracket of the pressure; low = -1 until P = 0 has been tried
   Pack rounding;        // pressure at rest, of whose rounding errors an actuated P cannot be rid
+  Pack left;            // error of the pressure that closing leaves, as predicted
+  Pack settled_slope;   // d P_t / d eps where it closed
   Pack smallest_slope;  // least f' seen: near or below 0 there may be several equilibria
   Pack iterations;
   Pack open;    // 1 while the slice is being solved, else 0
@@ -59,5 +61,17 @@ void advance_newton(const SliceShape& shape, const Pack* rows, const Pack& direc
 // when its radius changes by less than `tolerance` times the undeformed one.
 void advance_fixed_point(const SliceShape& shape, const Pack* rows, const Pack& direction, double tolerance,
                          PackState& state);
+
+// Errors of the pressures of closed slices, in units of S.
+struct PressureError {
+  Pack solution;  // what the last step has left, and rounding
+  Pack wall;      // of the quadrature through the wall, beyond `wall_error` itself
+};
+
+// The equation amplifies rounding where the bandage is nearly slack (the gap cancels), where the voltage
+// takes most of its pressure, and near a limit point (f' is small); the relative error of the quadrature
+// through the wall, `passive_wall_error`, in the same way (SegmentConstants).
+void pressure_error(const SliceShape& shape, const Pack* rows, const PackState& state, const Pack& wall_error,
+                    const Pack& passive_wall_error, PressureError& error);
 
 }  // namespace gaiter::physics

@@ -19,6 +19,10 @@ struct SliceOutcomes {
   Pack strain_actuated;          // of the leg: 1 - radius_actuated / leg_radius with all its digits [1]
   Pack bandage_radius_rest;      // inner face; larger than the leg's where they do not touch [m]
   Pack bandage_radius_actuated;  // the leg's where the bandage has none (pulled in) [m]
+  Pack actuation_drop;           // pressure_rest - pressure_actuated with all its digits [Pa]
+  Pack error_rest;               // of pressure_rest, by rounding and by what Newton has left [Pa]
+  Pack error_actuated;           // of pressure_actuated, likewise [Pa]
+  Pack error_of_difference;      // of the two, without what they have in common [Pa]
   Pack actuation_pressure;       // Eq. (8) at the actuated radius [Pa]
   Pack electric_field;           // [V/m]
   Pack iterations;
@@ -38,11 +42,12 @@ void record_rigid(const Pack* rows, const Pack& at_rest, const Pack& relief, Sli
 // The rigid answer as the whole result.
 void adopt_rigid(SliceOutcomes& outcomes);
 
-// The state at rest, which is also that of no voltage, and the one under voltage. `data_limit`: pressure
-// beyond which results are extrapolated [Pa].
-void record_rest(const Pack* rows, const PackState& state, const Pack& data_limit, SliceOutcomes& outcomes);
-void record_actuated(const Pack* rows, const PackState& state, const Pack& data_limit,
-                     SliceOutcomes& outcomes);
+// The state at rest, which is also that of no voltage, and the one under voltage. Puts the state's strain on
+// the leg's law: the last step left it on a tangent of the law, and without contact where it was.
+void record_rest(const SliceShape& shape, const Pack* rows, const SegmentConstants<Pack>& segments,
+                 PackState& state, SliceOutcomes& outcomes);
+void record_actuated(const SliceShape& shape, const Pack* rows, const SegmentConstants<Pack>& segments,
+                     PackState& state, SliceOutcomes& outcomes);
 
 // What needs the actuated radius of the bandage: actuation pressure and field. `voltage` [V].
 void record_loads(const SliceShape& shape, const Pack* rows, const Pack& voltage, SliceOutcomes& outcomes);

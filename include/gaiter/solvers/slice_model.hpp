@@ -30,7 +30,7 @@ struct SlicePlan {
   double tolerance = 0;      // of the discretisation
   double factor = 1;         // errors of the wanted outputs over those of the pressures
   double cost = 0;           // predicted [s]
-  bool actuated = true;  // false: the state under voltage is not wanted
+  bool actuated = true;      // false: the state under voltage is not wanted
 };
 
 // One segment of one design.
@@ -80,8 +80,11 @@ class SliceModel {
   void rest();
   void actuate();
   void solve_doubtful(bool at_rest);
+  void record_rest(const Block& block, std::size_t pack);
+  void record_actuated(const Block& block, std::size_t pack);
   void float_free(const Block& block, std::size_t pack);
-  void finish_actuated();
+  void finish_actuated(model::Fidelity fidelity);
+  void small_drops(std::size_t pack);
   void summarise(model::Fidelity fidelity);
   double model_error(std::size_t task, model::Fidelity fidelity) const;
   void height_errors(const Block& block);
