@@ -18,14 +18,15 @@ namespace {
 
 constexpr double caution = 10;  // of an error estimated from starting values instead of solutions
 constexpr double largest_own_error =
-    1e-4;                          // that the slices' own pressures tell; beyond, there may be a kink
-constexpr int fewest_to_tell = 6;  // slices, from which on these are trusted without a plan
+    1e-4;                                 // that the slices' own pressures tell; beyond, there may be a kink
+constexpr int fewest_to_tell = 6;         // slices, from which on these are trusted without a plan
 constexpr double smallest_error = 4e-15;  // of a sum of some slices, by rounding
 constexpr int most_check_points = 128;    // over the height, of the rule that an error estimate compares with
 
 }  // namespace
 
-// From the pressures of a block alone, where these leave no doubt: of the pieces of the height, each by itself.
+// From the pressures of a block alone, where these leave no doubt: of the pieces of the height, each by
+// itself.
 void SliceModel::height_errors(const Block& block) {
   const std::size_t count = block.rule->nodes.size();
   const auto tell = [&](auto&& error_of) {
@@ -59,9 +60,9 @@ void SliceModel::height_errors(const Block& block) {
         const std::size_t task = block.tasks[std::min<std::size_t>(i, block.tasks.size() - 1)];
         if (planned) roughness[i] = std::max(roughness[i], tasks_[task].plan->roughness);
       }
-      physics::height_error(
-          *block.rule, std::span(outcomes_).subspan(block.first_pack + from, count),
-          actuated ? &SliceOutcomes::pressure_actuated : &SliceOutcomes::pressure_rest, roughness, error, mean);
+      physics::height_error(*block.rule, std::span(outcomes_).subspan(block.first_pack + from, count),
+                            actuated ? &SliceOutcomes::pressure_actuated : &SliceOutcomes::pressure_rest,
+                            roughness, error, mean);
       for (int i = 0; i < pack_width; ++i) {
         sum[i] += share[i] * error[i];
         whole[i] += share[i] * mean[i];

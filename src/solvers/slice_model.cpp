@@ -125,8 +125,8 @@ void SliceModel::arrange() {
         if (++blocks > blocks_.size()) blocks_.emplace_back();
         Block& block = blocks_[blocks - 1];
         before = counts;
-        const model::SliceRule rule = tasks_[task].plan ? model::SliceRule::gauss
-                                                        : tasks_[task].scene->discretisation.slice_rule;
+        const model::SliceRule rule =
+            tasks_[task].plan ? model::SliceRule::gauss : tasks_[task].scene->discretisation.slice_rule;
         block.first_pack = packs;
         block.rule = &height_rule(rule, counts.slices);
         block.pieces = counts.pieces;

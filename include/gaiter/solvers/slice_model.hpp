@@ -30,7 +30,7 @@ struct SlicePlan {
   double tolerance = 0;      // of the discretisation
   double factor = 1;         // errors of the wanted outputs over those of the pressures
   double cost = 0;           // predicted [s]
-  bool actuated = true;  // false: the state under voltage is not wanted
+  bool actuated = true;      // false: the state under voltage is not wanted
 };
 
 // One segment of one design.
