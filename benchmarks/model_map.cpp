@@ -97,7 +97,7 @@ void solve(const ConeCase& c, const std::vector<double>& parts, int refine, Tabl
     results.push_back(part == 0 ? elements(scene, 0, model::ContactAxial::held)
                                 : model::without_numbers(model::Status::invalid, model::Fidelity::axisym));
     table.add(c, scene, part, results);
-    return model::trustworthy(results[2].status) && physics::model_shifts(scene, 0, results[0]).known;
+    return model::trustworthy(results[2].status) && physics::model_shifts(scene, 0, results[0]).rest_known;
   };
   if (!row(0)) return;
   const double last = parts.empty() ? NAN : last_stable_voltage(scene);

@@ -53,7 +53,7 @@ TEST(ModelError, BoundsTheDifferenceToFiniteElementsAtRest) {
   for (const ConeCase& cone : draw_cones(fresh, draws)) {
     const model::Scene scene = scene_of(cone);
     const model::SegmentResult slices = slices_of(scene);
-    if (!model_shifts(scene, 0, slices).known) continue;
+    if (!model_shifts(scene, 0, slices).actuated_known) continue;
     ++known;
     const model::SegmentResult truth = elements_of(scene),
                                sliding = solvers::solve_sliding({&scene, 0}).result;
@@ -88,7 +88,7 @@ TEST(ModelError, BoundsTheDifferenceUnderVoltage) {
     const model::SegmentResult small = slices_of(scene);
     scene.bandage.modules[0].voltage = std::sqrt(0.1 * small.pressure_rest / small.actuation_pressure);
     const model::SegmentResult slices = slices_of(scene);
-    if (!model_shifts(scene, 0, slices).known) continue;
+    if (!model_shifts(scene, 0, slices).actuated_known) continue;
     const model::SegmentResult truth = elements_of(scene),
                                sliding = solvers::solve_sliding({&scene, 0}).result;
     if (!model::trustworthy(truth.status) || !model::trustworthy(sliding.status))

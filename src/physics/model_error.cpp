@@ -19,9 +19,10 @@ constexpr double steepest = 0.364;  // slope: 20 degrees
 constexpr double widest = 1.2;      // difference of the radii at both ends, over their mean
 constexpr double narrowest = 1.03;  // stretch of the bandage at the narrow end of a leg that has given way
 constexpr double softest = 0.7;     // pressure over the shear modulus of the leg
-constexpr double softest_tube = 4;  // K, beyond which it is close to buckling
-constexpr double largest_slide =
-    0.8;  // K m H/R, beyond which there is often no stable state without friction
+// K, beyond which the tube is close to buckling; under voltage, which takes its tension away, the less.
+constexpr double softest_at_rest = 6, softest_energised = 4;
+// K m H/R, beyond which there is often no stable state without friction.
+constexpr double largest_slide = 0.8;
 
 // The leg at its mean radius under a pressure P: its strain eps, and derivatives with respect to ln P.
 struct LegAnswer {
@@ -197,28 +198,39 @@ bool in_box(const model::Scene& scene, std::size_t index) {
          within(radius / (wall.inner_radius + wall.thickness), 1.06, 2.2);
 }
 
-bool in_box(const State& state) {
+bool in_box(const State& state, double softest_tube) {
   return state.axially_stable && std::fabs(state.k) <= softest_tube &&
          std::fabs(state.slide) <= largest_slide && state.strain <= 0.3 && state.narrow >= narrowest;
 }
 
-// Both states of a segment, and what the leg's shear has to say. False: outside of the box, or without an
-// answer.
-bool states_of(const model::Scene& scene, std::size_t segment, const model::SegmentResult& slices,
-               State& rest, State& actuated, LegShear& shear) {
+// Both states of a segment, which of them are inside of the box, and what the leg's shear has to say.
+struct States {
+  State rest, actuated;
+  bool rest_known = false, actuated_known = false;
+  LegShear shear;
+};
+
+States states_of(const model::Scene& scene, std::size_t segment, const model::SegmentResult& slices) {
+  States states;
   const bool in_contact =
       slices.status == model::Status::contact || slices.status == model::Status::extrapolated;
-  if (!in_contact || !(slices.pressure_rest > 0) || !(slices.pressure_actuated > 0)) return false;
+  if (!in_contact || !(slices.pressure_rest > 0) || !(slices.pressure_actuated > 0)) return states;
   const double voltage = scene.bandage.modules[segment].voltage;
-  rest = state_of(scene, segment, slices.pressure_rest, 1 - slices.volume_rest / slices.volume_initial, 0);
-  actuated =
-      voltage == 0 ? rest : state_of(scene, segment, slices.pressure_actuated, slices.volume_change, voltage);
+  states.rest =
+      state_of(scene, segment, slices.pressure_rest, 1 - slices.volume_rest / slices.volume_initial, 0);
+  states.actuated = voltage == 0
+                        ? states.rest
+                        : state_of(scene, segment, slices.pressure_actuated, slices.volume_change, voltage);
+  bool known = in_box(scene, segment);
+  if (scene.leg.model == model::LegModel::compliant) {
+    states.shear = leg_shear(scene.leg, scene.leg.segments[segment], slices.pressure_rest);
+    known = known && states.shear.load <= softest && states.shear.part >= 0.04 && states.shear.part <= 1;
+  }
+  states.rest_known = known && in_box(states.rest, softest_at_rest);
+  states.actuated_known = states.rest_known && (voltage == 0 || in_box(states.actuated, softest_energised));
   if (scene.contact_axial == model::ContactAxial::held)
-    for (State* state : {&rest, &actuated}) state->pressure.sliding = state->volume.sliding = 0;
-  if (!in_box(scene, segment) || !in_box(rest) || !in_box(actuated)) return false;
-  if (scene.leg.model == model::LegModel::rigid) return true;
-  shear = leg_shear(scene.leg, scene.leg.segments[segment], slices.pressure_rest);
-  return shear.load <= softest && shear.part >= 0.04 && shear.part <= 1;
+    for (State* state : {&states.rest, &states.actuated}) state->pressure.sliding = state->volume.sliding = 0;
+  return states;
 }
 
 // What is added to the size of the shifts that a model lacks, so that the sum exceeds its difference to the
@@ -256,19 +268,14 @@ constexpr Bounds sliding_bounds{
 }  // namespace
 
 ModelShifts model_shifts(const model::Scene& scene, std::size_t segment, const model::SegmentResult& slices) {
-  State rest, actuated;
-  LegShear shear;
-  const bool known = states_of(scene, segment, slices, rest, actuated, shear);
-  return {rest.pressure, actuated.pressure, rest.volume, actuated.volume, known};
+  const States states = states_of(scene, segment, slices);
+  return {states.rest.pressure,   states.actuated.pressure, states.rest.volume,
+          states.actuated.volume, states.rest_known,        states.actuated_known};
 }
 
 ModelErrors model_errors(const model::Scene& scene, std::size_t segment, const model::SegmentResult& slices) {
-  State rest, actuated;
-  LegShear shear;
-  if (!states_of(scene, segment, slices, rest, actuated, shear)) {
-    constexpr ModelError none{unknown, unknown, unknown, unknown};
-    return {none, none};
-  }
+  const States states = states_of(scene, segment, slices);
+  const State &rest = states.rest, &actuated = states.actuated;
   // The drop is the difference of two pressures whose shifts are much the same.
   const double drop = slices.pressure_rest - slices.pressure_actuated;
   const auto drop_part = [&](double ModelShift::*part) {
@@ -280,16 +287,18 @@ ModelErrors model_errors(const model::Scene& scene, std::size_t segment, const m
     dropped = {drop_part(&ModelShift::sliding), drop_part(&ModelShift::slope), drop_part(&ModelShift::ends)};
   const auto errors = [&](const Bounds& bounds, auto&& lacking) {
     const auto bounded = [&](const Bound& bound, const ModelShift& shift, const State& state) {
-      return std::fabs(lacking(shift)) + bound(shift, state, shear);
+      return std::fabs(lacking(shift)) + bound(shift, state, states.shear);
     };
-    ModelError error;
-    error.pressure_rest = bounded(bounds.pressure, rest.pressure, rest);
-    error.pressure_actuated = bounded(bounds.pressure, actuated.pressure, actuated);
+    ModelError error{unknown, unknown, unknown, unknown};
     // Without voltage, and on a leg that does not give way, all models agree on nothing.
-    if (scene.bandage.modules[segment].voltage != 0)
-      error.actuation_drop = drop > 0 ? bounded(bounds.drop, dropped, actuated) : unknown;
-    if (scene.leg.model == model::LegModel::compliant)
-      error.volume_change = actuated.strain > 0 ? bounded(bounds.volume, actuated.volume, actuated) : unknown;
+    if (scene.bandage.modules[segment].voltage == 0) error.actuation_drop = 0;
+    if (scene.leg.model == model::LegModel::rigid) error.volume_change = 0;
+    if (states.rest_known) error.pressure_rest = bounded(bounds.pressure, rest.pressure, rest);
+    if (!states.actuated_known) return error;
+    error.pressure_actuated = bounded(bounds.pressure, actuated.pressure, actuated);
+    if (scene.bandage.modules[segment].voltage != 0 && drop > 0)
+      error.actuation_drop = bounded(bounds.drop, dropped, actuated);
+    if (actuated.strain > 0) error.volume_change = bounded(bounds.volume, actuated.volume, actuated);
     return error;
   };
   return {errors(slice_bounds, [](const ModelShift& shift) { return shift.all(); }),

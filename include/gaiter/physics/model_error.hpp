@@ -4,7 +4,7 @@
 #include "gaiter/model/result.hpp"
 
 // How far slices and sliding slices are from the axisymmetric finite elements, estimated from the slices'
-// result alone in some 0.2 microseconds: to leading order in the slope m of the leg, in closed form.
+// result alone in 0.1 to 0.4 microseconds: to leading order in the slope m of the leg, in closed form.
 //
 // Three effects, all of the order m^2, change the mean pressure of a segment of height H, radius R and slope
 // m; tau is the tension along the tube over that around it, K the change of the tube's axial stretch per
@@ -35,10 +35,11 @@ struct ModelShift {
 // Of the state at rest and the actuated one.
 struct ModelShifts {
   ModelShift pressure_rest, pressure_actuated, volume_rest, volume_actuated;
-  bool known = false;  // false: outside of what was calibrated; all numbers may be wrong
+  bool rest_known = false, actuated_known = false;  // false: outside of what was calibrated
 };
 
-// Estimated relative errors, against finite elements, of what a model computes; infinity: unknown.
+// Estimated errors of what a model computes, relative to that; infinity: unknown. volume_change is that of
+// the actuated state, as in the result.
 struct ModelError {
   double pressure_rest = 0, pressure_actuated = 0;
   double actuation_drop = 0;
@@ -49,10 +50,12 @@ struct ModelErrors {
   ModelError slice, sliding;
 };
 
-// `slices`: what plain slices say of that segment. Known for segments in contact all over, with
-// taper below 20 degrees, H/R of 0.3 to 5, |radius difference|/R below 1.2, wall/R of 0.0025 to 0.05,
-// stretch of 1.06 to 2.2, strains of the leg below 0.3, pressures below the leg's shear modulus, and
-// m H/R |K| below `largest_slide`, beyond which the frictionless tube has often no stable state.
+// `slices`: what plain slices say of that segment. Known for segments in contact all over, of taper below 20
+// degrees, H/R of 0.3 to 5, difference of the end radii below 1.2 R, wall/R of 0.0025 to 0.05, stretch
+// of 1.06 to 2.2 and at the narrow end at least 1.03 once the leg has given way, Ogden exponents from -2
+// to 12.2, strains of the leg below 0.3, a shear modulus of the leg of 0.04 to 1 of its stiffness against a
+// small uniform pressure and no less than the pressure over 0.7, |K| below 6 (under voltage 4) and |K| m H/R
+// below 0.8: beyond, the frictionless tube has often buckled, or has no stable state.
 ModelShifts model_shifts(const model::Scene& scene, std::size_t segment, const model::SegmentResult& slices);
 ModelErrors model_errors(const model::Scene& scene, std::size_t segment, const model::SegmentResult& slices);
 
