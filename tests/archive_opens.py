@@ -44,7 +44,7 @@ def real_values(position):
 
 def check_with_h5py(path):
     with h5py.File(path, "r") as file:
-        names = {"case", "segment", "iterations", "slice_count", "wall_points", *REALS, *FLAGS, *PER_CASE}
+        names = {"case", "segment", "iterations", "slices_used", "wall_points_used", *REALS, *FLAGS, *PER_CASE}
         assert set(file) == names, set(file) ^ names
         for name in file:
             assert isinstance(file[name], h5py.Dataset), name
