@@ -79,8 +79,8 @@ def check_with_xarray(path):
         np.testing.assert_array_equal(data["status"].values, ROW % 7)
         np.testing.assert_array_equal(data["fidelity"].values, ROW % 2)
         np.testing.assert_array_equal(data["iterations"].values, 100000 + ROW)
-        np.testing.assert_array_equal(data["slice_count"].values, 200000 + ROW)
-        np.testing.assert_array_equal(data["wall_points"].values, 300000 + ROW)
+        np.testing.assert_array_equal(data["slices_used"].values, 200000 + ROW)
+        np.testing.assert_array_equal(data["wall_points_used"].values, 300000 + ROW)
         for name, (unit, values) in PER_CASE.items():
             assert data[name].dims == ("case",), name
             assert data[name].dtype == np.float64, name
