@@ -203,8 +203,8 @@ inline void expect_rows(const Archive& archive, const std::vector<SegmentResult>
   expect("error_estimate", &SegmentResult::error_estimate);
   expect("discretisation_error", &SegmentResult::discretisation_error);
   expect("model_error", &SegmentResult::model_error);
-  expect("slice_count", &SegmentResult::slice_count);
-  expect("wall_points", &SegmentResult::wall_points);
+  expect("slices_used", &SegmentResult::slice_count);
+  expect("wall_points_used", &SegmentResult::wall_points);
   expect("iterations", &SegmentResult::iterations);
   expect("status", &SegmentResult::status);
   expect("fidelity", &SegmentResult::fidelity);

@@ -99,10 +99,11 @@ std::string with_number(const SweepAxis& axis, double number) {
 TEST(Designs, EverySweepableNumberSetsWhatTheOptionItselfSets) {
   // Two values that each option admits; 3 and 4 will do for the others.
   const std::map<std::string_view, std::pair<std::string, std::string>> pairs = {
-      {"bandage_<s>_length", {"13 cm", "14 cm"}}, {"bandage_<s>_stretch", {"1.3", "1.7"}},
-      {"bandage_thickness", {"2 mm", "3 mm"}},    {"leg_<s>_height", {"2 cm", "3 cm"}},
-      {"leg_<s>_radius", {"46 mm", "47 mm"}},     {"leg_poisson", {"0.1", "0.2"}},
-      {"leg_radius_scale", {"1.1", "1.2"}},       {"slice_fixed_point_tolerance", {"1e-3", "2e-3"}}};
+      {"accuracy", {"1e-2", "1e-3"}},          {"bandage_<s>_length", {"13 cm", "14 cm"}},
+      {"bandage_<s>_stretch", {"1.3", "1.7"}}, {"bandage_thickness", {"2 mm", "3 mm"}},
+      {"leg_<s>_height", {"2 cm", "3 cm"}},    {"leg_<s>_radius", {"46 mm", "47 mm"}},
+      {"leg_poisson", {"0.1", "0.2"}},         {"leg_radius_scale", {"1.1", "1.2"}},
+      {"slice_fixed_point_tolerance", {"1e-3", "2e-3"}}};
   const std::map<std::string, std::pair<std::string, std::string>> compliance = {
       {"a", {"0.02", "0.03"}}, {"c", {"-0.02", "-0.03"}}, {"d", {"-1e-3", "-2e-3"}}};
   std::set<std::string> outcomes;

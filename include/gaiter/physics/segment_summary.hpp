@@ -17,7 +17,8 @@ class SegmentSummary {
                  const SegmentPack& segments);
 
   // Of one segment. All numbers but the initial volume and the rigid pressures are NaN where a slice has no
-  // trustworthy result, the field also where one is pulled in. `quadrature_error` becomes the discretisation error.
+  // trustworthy result, the field also where one is pulled in. `quadrature_error` becomes the discretisation
+  // error.
   model::SegmentResult result(int place, double quadrature_error) const;
 
  private:

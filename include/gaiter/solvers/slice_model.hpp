@@ -30,7 +30,7 @@ struct SlicePlan {
   double tolerance = 0;      // of the discretisation
   double factor = 1;         // errors of the wanted outputs over those of the pressures
   double cost = 0;           // predicted [s]
-  bool actuated = true;  // false: the state under voltage is not wanted
+  bool actuated = true;      // false: the state under voltage is not wanted
 };
 
 // One segment of one design.
@@ -83,7 +83,7 @@ class SliceModel {
   void float_free(const Block& block, std::size_t pack);
   void finish_actuated();
   void summarise(model::Fidelity fidelity);
-  double model_error(std::size_t task, model::Fidelity fidelity) const;
+  double model_error(std::size_t task, const model::SegmentResult& result) const;
   void height_errors(const Block& block);
   void errors_of_start(bool rigid);
   void errors_of_start(std::span<const std::size_t> tasks, bool rigid);
