@@ -44,7 +44,7 @@ def real_values(position):
 
 def check_with_h5py(path):
     with h5py.File(path, "r") as file:
-        names = {"case", "segment", "iterations", "slice_count", "wall_points", *REALS, *FLAGS, *PER_CASE}
+        names = {"case", "segment", "iterations", "slices_used", "wall_points_used", "unknowns", *REALS, *FLAGS, *PER_CASE}
         assert set(file) == names, set(file) ^ names
         for name in file:
             assert isinstance(file[name], h5py.Dataset), name
@@ -79,8 +79,9 @@ def check_with_xarray(path):
         np.testing.assert_array_equal(data["status"].values, ROW % 7)
         np.testing.assert_array_equal(data["fidelity"].values, ROW % 2)
         np.testing.assert_array_equal(data["iterations"].values, 100000 + ROW)
-        np.testing.assert_array_equal(data["slice_count"].values, 200000 + ROW)
-        np.testing.assert_array_equal(data["wall_points"].values, 300000 + ROW)
+        np.testing.assert_array_equal(data["slices_used"].values, 200000 + ROW)
+        np.testing.assert_array_equal(data["wall_points_used"].values, 300000 + ROW)
+        np.testing.assert_array_equal(data["unknowns"].values, 400000 + ROW)
         for name, (unit, values) in PER_CASE.items():
             assert data[name].dims == ("case",), name
             assert data[name].dtype == np.float64, name

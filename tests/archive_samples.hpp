@@ -92,6 +92,7 @@ inline SegmentResult sample_row(std::size_t row) {
   result.model_error = 22000 + x;
   result.slice_count = static_cast<int>(200000 + row);
   result.wall_points = static_cast<int>(300000 + row);
+  result.unknowns = static_cast<int>(400000 + row);
   result.iterations = static_cast<int>(100000 + row);
   result.status = static_cast<model::Status>(row % 7);
   result.fidelity = static_cast<model::Fidelity>(row % 2);
@@ -203,8 +204,9 @@ inline void expect_rows(const Archive& archive, const std::vector<SegmentResult>
   expect("error_estimate", &SegmentResult::error_estimate);
   expect("discretisation_error", &SegmentResult::discretisation_error);
   expect("model_error", &SegmentResult::model_error);
-  expect("slice_count", &SegmentResult::slice_count);
-  expect("wall_points", &SegmentResult::wall_points);
+  expect("slices_used", &SegmentResult::slice_count);
+  expect("wall_points_used", &SegmentResult::wall_points);
+  expect("unknowns", &SegmentResult::unknowns);
   expect("iterations", &SegmentResult::iterations);
   expect("status", &SegmentResult::status);
   expect("fidelity", &SegmentResult::fidelity);

@@ -88,9 +88,10 @@ constexpr std::array table{
         "estimated relative change of the pressures by the models beyond this one, as far as known: the leg "
         "that gives way, the bandage that slides; NaN where unknown",
         &Row::model_error},
-    Column{"slice_count", "1", "slices over the height of the segment; 0 for finite elements",
+    Column{"slices_used", "1", "slices over the height of the segment; 0 for finite elements",
            &Row::slice_count},
-    Column{"wall_points", "1", "Gauss points through the wall; 0 for finite elements", &Row::wall_points},
+    Column{"wall_points_used", "1", "Gauss points through the wall; 0 for finite elements",
+           &Row::wall_points},
     Column{"unknowns", "1", "unknowns of the system of equations; 0 for closed forms", &Row::unknowns},
     Column{"iterations", "1", "iterations of the solver, the most that any slice of the segment took",
            &Row::iterations},

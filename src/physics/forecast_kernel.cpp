@@ -183,8 +183,7 @@ void forecast_state(const ForecastInput& input, bool voltage, const ForecastStat
     s.gain[i] = 0;
     if (!(open[i] > 0)) s.strain[i] = s.response[i] = 0;
   }
-  if (rest)
-    GAITER_EACH {
+  if (rest) GAITER_EACH {
       // From the state at rest, by the relief that the leg's giving way leaves.
       const double relieved = rest->pressure[i] - (rest->rigid[i] - s.rigid[i]) / (1 + rest->gain[i]);
       const bool better = relieved > 0.3 * rest->pressure[i] && relieved < input.pressure_limit[i];

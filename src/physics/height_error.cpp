@@ -69,8 +69,7 @@ void height_error(const Quadrature& gauss, std::span<const SliceOutcomes> slices
     size[i] = larger(end, 0.5 * expected);
     rate[i] = size[i] < middle ? size[i] / middle * (2 * degree - 1) : 2 * degree - 1;
   }
-  for (int k = degree + 1; k <= 2 * count; ++k)
-    GAITER_EACH {
+  for (int k = degree + 1; k <= 2 * count; ++k) GAITER_EACH {
       const double ratio = (rate[i] + (k - degree) * std::fabs(roughness[i])) / (2 * k - 1);
       size[i] *= ratio < 1 ? ratio : 1;
     }

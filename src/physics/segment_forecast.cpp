@@ -221,9 +221,10 @@ double SegmentForecast::gain() const {
   return worst([](const State& s) { return s.gain; });
 }
 
-// The pressure has singularities over the (complex) height where the gain is -1, and Gauss's rule converges as
-// the ellipse through them says. With an exponential of rate d in the leg's law these lie where the gain that
-// it gives is 1 in size, pi/|d| off the real pressures; the part that they have in the pressure is 1/|d|.
+// The pressure has singularities over the (complex) height where the gain is -1, and Gauss's rule converges
+// as the ellipse through them says. With an exponential of rate d in the leg's law these lie where the gain
+// that it gives is 1 in size, pi/|d| off the real pressures; the part that they have in the pressure is
+// 1/|d|.
 void SegmentForecast::find_poles(State& s) const {
   const model::Leg& leg = scene_->leg;
   s.poles = {};

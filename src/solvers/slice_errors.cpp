@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "gaiter/physics/height_error.hpp"
+#include "gaiter/physics/model_error.hpp"
 #include "gaiter/physics/slice_kernel.hpp"
 #include "gaiter/solvers/slice_model.hpp"
 
@@ -18,14 +19,15 @@ namespace {
 
 constexpr double caution = 10;  // of an error estimated from starting values instead of solutions
 constexpr double largest_own_error =
-    1e-4;                          // that the slices' own pressures tell; beyond, there may be a kink
-constexpr int fewest_to_tell = 6;  // slices, from which on these are trusted without a plan
+    1e-4;                                 // that the slices' own pressures tell; beyond, there may be a kink
+constexpr int fewest_to_tell = 6;         // slices, from which on these are trusted without a plan
 constexpr double smallest_error = 4e-15;  // of a sum of some slices, by rounding
 constexpr int most_check_points = 128;    // over the height, of the rule that an error estimate compares with
 
 }  // namespace
 
-// From the pressures of a block alone, where these leave no doubt: of the pieces of the height, each by itself.
+// From the pressures of a block alone, where these leave no doubt: of the pieces of the height, each by
+// itself.
 void SliceModel::height_errors(const Block& block) {
   const std::size_t count = block.rule->nodes.size();
   const auto tell = [&](auto&& error_of) {
@@ -59,9 +61,9 @@ void SliceModel::height_errors(const Block& block) {
         const std::size_t task = block.tasks[std::min<std::size_t>(i, block.tasks.size() - 1)];
         if (planned) roughness[i] = std::max(roughness[i], tasks_[task].plan->roughness);
       }
-      physics::height_error(
-          *block.rule, std::span(outcomes_).subspan(block.first_pack + from, count),
-          actuated ? &SliceOutcomes::pressure_actuated : &SliceOutcomes::pressure_rest, roughness, error, mean);
+      physics::height_error(*block.rule, std::span(outcomes_).subspan(block.first_pack + from, count),
+                            actuated ? &SliceOutcomes::pressure_actuated : &SliceOutcomes::pressure_rest,
+                            roughness, error, mean);
       for (int i = 0; i < pack_width; ++i) {
         sum[i] += share[i] * error[i];
         whole[i] += share[i] * mean[i];
@@ -77,22 +79,24 @@ void SliceModel::height_errors(const Block& block) {
     if (!(worst[static_cast<int>(i)] < largest_own_error)) unclear_.push_back(block.tasks[i]);
 }
 
-// What models beyond this one would change, as far as it is known.
-double SliceModel::model_error(std::size_t task, model::Fidelity fidelity) const {
-  if (tasks_[task].plan) return tasks_[task].plan->change_beyond;
+// What models beyond this one would change in the pressures, as far as it is known.
+double SliceModel::model_error(std::size_t task, const model::SegmentResult& result) const {
   const model::Scene& scene = *tasks_[task].scene;
-  const physics::SegmentForecast& forecast = forecasts_[task];
-  const double sliding = forecast.sliding_error();
-  const bool gives_way = scene.leg.model != model::LegModel::rigid;
-  if (fidelity == model::Fidelity::slice || !gives_way) return sliding;
+  const physics::ModelError slices = physics::model_errors(scene, tasks_[task].segment, result).slice;
+  const double beyond = std::max(slices.pressure_rest, slices.pressure_actuated);
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  if (!std::isfinite(beyond)) return none;
+  if (result.fidelity == model::Fidelity::slice || scene.leg.model == model::LegModel::rigid) return beyond;
+  if (tasks_[task].plan) return beyond + tasks_[task].plan->model_error;
   // A leg without compliance has none to correct for.
   const bool known = scene.leg.material != model::LegMaterial::compliance ||
                      scene.leg.segments[tasks_[task].segment].compliance.b > 0;
-  if (!known) return std::numeric_limits<double>::quiet_NaN();
-  const double error = sliding + (fidelity == model::Fidelity::rigid ? forecast.compliance_error()
-                                                                     : forecast.first_order_error());
+  if (!known) return none;
+  const physics::SegmentForecast& forecast = forecasts_[task];
+  const double error = beyond + (result.fidelity == model::Fidelity::rigid ? forecast.compliance_error()
+                                                                           : forecast.first_order_error());
   // A leg that gives way may feel nothing at all, and no multiple of that is the error.
-  return std::isfinite(error) ? error : std::numeric_limits<double>::quiet_NaN();
+  return std::isfinite(error) ? error : none;
 }
 
 // Of the tasks left, from the average of the starting values, which are close to the pressures.

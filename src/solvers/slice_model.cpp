@@ -40,15 +40,14 @@ const physics::Quadrature& SliceModel::wall_rule(int points) {
 void SliceModel::forecast() {
   using physics::SegmentForecast;
   forecasts_.clear();
-  auto depth = SegmentForecast::Depth::sliding;
+  bool needed = false;
   for (const SegmentTask& task : tasks_) {
     if (task.plan) return;
     const model::Scene& scene = *task.scene;
     forecasts_.emplace_back(scene, task.segment);
-    if (scene.fidelity != model::Fidelity::slice || scene.discretisation.wall_points > 0)
-      depth = SegmentForecast::Depth::all;
+    if (scene.fidelity != model::Fidelity::slice || scene.discretisation.wall_points > 0) needed = true;
   }
-  SegmentForecast::analyse(forecasts_, depth);
+  if (needed) SegmentForecast::analyse(forecasts_);
 }
 
 // The tasks' slices, set up in the memory of the batch before.
@@ -277,7 +276,7 @@ void SliceModel::summarise(model::Fidelity fidelity) {
       result.voltage_stable =
           result.status < Status::pulled_in ? numbers.voltage : std::numeric_limits<double>::quiet_NaN();
       if (!model::trustworthy(result.status)) continue;
-      result.model_error = model_error(task, fidelity);
+      result.model_error = model_error(task, result);
       model::derive_error(result);
     }
   }

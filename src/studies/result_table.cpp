@@ -41,6 +41,30 @@ std::string_view meaning(model::Status status) {
   return "";
 }
 
+// The errors of the pressures, the worst of all segments.
+std::string error_note(std::span<const model::SegmentResult> results) {
+  double own = -1, beyond = -1;
+  std::size_t unknown = 0;
+  for (const model::SegmentResult& result : results) {
+    own = std::fmax(own, result.discretisation_error);
+    beyond = std::fmax(beyond, result.model_error);
+    if (model::trustworthy(result.status) && std::isnan(result.model_error)) ++unknown;
+  }
+  std::string text;
+  if (own >= 0) text += fmt::format("error of the pressures by the discretisation: up to {:.1e}", own);
+  if (beyond > 0)
+    text += fmt::format("{} up to {:.1e}",
+                        text.empty() ? "what finer models would change in the pressures:"
+                                     : "; what finer models would change:",
+                        beyond);
+  if (text.empty()) return text;
+  text += " (relative, estimated)\n";
+  if (unknown > 0)
+    text += fmt::format("what finer models would change is not known of {} of {} segments\n", unknown,
+                        results.size());
+  return text;
+}
+
 }  // namespace
 
 std::string result_table(const model::Scene& scene, std::span<const model::SegmentResult> results) {
@@ -71,6 +95,7 @@ std::string result_table(const model::Scene& scene, std::span<const model::Segme
           "{}: estimated relative error of the pressure {:.1e}; more -slice_count or -wall_points\n",
           segment.name, r.discretisation_error);
   }
+  notes += error_note(results);
   for (std::size_t status = 1; status < seen.size(); ++status)
     if (seen[status])
       notes += fmt::format("{}: {}\n", archive::word(static_cast<model::Status>(status)),

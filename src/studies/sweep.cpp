@@ -6,6 +6,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <functional>
+#include <map>
 #include <optional>
 
 #include "gaiter/archive/sweep_archive.hpp"
@@ -13,6 +16,7 @@
 #include "gaiter/studies/chunk_solver.hpp"
 #include "gaiter/studies/progress.hpp"
 #include "gaiter/studies/rank_groups.hpp"
+#include "gaiter/studies/scene_checks.hpp"
 #include "gaiter/studies/solve.hpp"
 #include "gaiter/studies/stop_signal.hpp"
 #include "gaiter/studies/work_queue.hpp"
@@ -47,6 +51,18 @@ archive::Layout layout_of(const Request& request, const Designs& designs) {
   for (const SweepAxis& axis : designs.axes())
     layout.swept.push_back({axis.name, std::string(axis.unit()), std::string(axis.option->doc)});
   return layout;
+}
+
+// Meshes with the most cells first, so that no rank begins one when the others have nothing left to do.
+void largest_first(std::vector<std::size_t>& chunks, const archive::SweepArchive& archive,
+                   const Designs& designs, model::Scene scene) {
+  if (scene.fidelity != model::Fidelity::axisym) return;
+  std::map<std::size_t, double> cells;
+  for (const std::size_t chunk : chunks)
+    for (std::size_t k = 0; k < archive.cases_in(chunk); ++k)
+      if (put_design(designs, static_cast<std::int64_t>(archive.first_case(chunk) + k), scene).empty())
+        cells[chunk] += std::pow(4, scene.axisym.refine) * scene.axisym.order * scene.axisym.order;
+  std::ranges::stable_sort(chunks, std::greater(), [&](std::size_t chunk) { return cells[chunk]; });
 }
 
 // The chunks that are left to do, by this rank's group as long as there are any.
@@ -87,6 +103,7 @@ SweepRun::SweepRun(MPI_Comm comm, const Request& request, const Designs& designs
       report_.missing += static_cast<std::int64_t>(archive.cases_in(chunk));
     }
   }
+  largest_first(chunks_, archive, designs, request.scene);
   report_.taken_up = designs.size() - report_.missing;
   // Slices all cost about the same. The others may differ tenfold.
   const bool even =

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-2-Clause
 #pragma once
 
+#include <bit>
+#include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 
 #include "gaiter/model/scene.hpp"
@@ -71,10 +74,19 @@ inline void derive_changes(SegmentResult& result) {
   result.actuation_drop = result.pressure_rest - result.pressure_actuated;
 }
 
-// Fills in the sum of the errors.
+// An estimated error, rounded up to 8 binary digits: more would mean nothing, and fill archives.
+inline double rounded_up(double error) {
+  constexpr std::uint64_t rest = (std::uint64_t{1} << 44) - 1;
+  if (!(error > 0) || !std::isfinite(error)) return error;
+  return std::bit_cast<double>((std::bit_cast<std::uint64_t>(error) + rest) & ~rest);
+}
+
+// Rounds the errors and fills in their sum.
 inline void derive_error(SegmentResult& result) {
+  result.discretisation_error = rounded_up(result.discretisation_error);
+  result.model_error = rounded_up(result.model_error);
   const double beyond = result.model_error >= 0 ? result.model_error : 0;
-  result.error_estimate = result.discretisation_error + beyond;
+  result.error_estimate = rounded_up(result.discretisation_error + beyond);
 }
 
 // A row of which nothing but the reason is known.

@@ -49,8 +49,8 @@ struct ForecastErrors {
   std::array<Pack, forecast_points + 2> height, wall;  // [Pa]
 };
 
-// Pressure by two points through the wall; the leg's strain from a few Newton steps. `rest`: the state without
-// voltage, if it is known, to start from.
+// Pressure by two points through the wall; the leg's strain from a few Newton steps. `rest`: the state
+// without voltage, if it is known, to start from.
 void forecast_state(const ForecastInput& input, bool voltage, const ForecastState* rest,
                     ForecastState& state);
 

@@ -12,9 +12,9 @@ namespace gaiter::physics {
 constexpr int fewest_for_height_error = 4;
 
 // Error of the average of a pressure by a Gauss rule over the height, times that average, from the pressures
-// at its n nodes alone: the fall of their Legendre coefficients carried on to the degree 2n, which the rule is
-// the first to get wrong. Ratios of neighbours fall like those of an exponential, but never below those of a
-// function with a pole at the distance 1/roughness (in half lengths of the interval). For 64 segments at a
+// at its n nodes alone: the fall of their Legendre coefficients carried on to the degree 2n, which the rule
+// is the first to get wrong. Ratios of neighbours fall like those of an exponential, but never below those of
+// a function with a pole at the distance 1/roughness (in half lengths of the interval). For 64 segments at a
 // time, whose slices at one node are a pack. `mean`: the average. Tested in tests/slice_reference.cpp and
 // tests/auto_model.cpp.
 void height_error(const Quadrature& gauss, std::span<const SliceOutcomes> slices,

@@ -12,11 +12,11 @@ namespace gaiter::solvers {
 
 // The cheapest model of one segment that should reach the scene's goal: rigid leg, first-order correction,
 // slices with the fewest points over the height and through the wall, by the forecast of their errors alone;
-// then, where the goal allows more than slices, by climb() from these, which are solved for it. The `cost` is a
-// fit to measurements on one core (benchmarks/auto_study).
+// then, where the goal allows more than slices, by climb() from these, which are solved for it. The `cost` is
+// a fit to measurements on one core (benchmarks/auto_study).
 SlicePlan plan_segment(const model::Scene& scene, std::size_t segment);
-// Without that last step, for many, whose scenes have the same leg material and number of Ogden terms: 64 cost little more
-// than one.
+// Without that last step, for many, whose scenes have the same leg material and number of Ogden terms: 64
+// cost little more than one.
 void plan_segments(std::span<const SegmentTask> tasks, std::vector<SlicePlan>& plans);
 
 // From a plan's result by slices, or something simpler: the same plan if finer models would change no wanted
@@ -30,8 +30,9 @@ double plan_cost(const model::Scene& scene, std::size_t segment, const SlicePlan
 constexpr double planning_cost = 0.9e-6;  // [s]
 
 // Segments that each go by their plan. Slices whose own pressures, once solved, tell of a larger error than
-// the goal allows are solved again with more of them, and likewise sliding slices and finite elements (whose mesh is refined); what
-// is not wanted is not computed and NaN. Results do not depend on what else is in a batch.
+// the goal allows are solved again with more of them, and likewise sliding slices and finite elements (whose
+// mesh is refined); what is not wanted is not computed and NaN. Results do not depend on what else is in a
+// batch.
 class AutoModel {
  public:
   // `group`: ranks that share finite element meshes; everything else each rank solves by itself.

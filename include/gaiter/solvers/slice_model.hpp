@@ -21,7 +21,7 @@ struct SlicePlan {
   model::Fidelity fidelity = model::Fidelity::slice;
   int slice_count = 6;  // Gauss points, in each piece between cuts
   int wall_points = 3;
-  std::vector<double> cuts;  // heights in (0, 1), ascending, where the bandage leaves the leg
+  std::vector<double> cuts = {};  // heights in (0, 1), ascending, where the bandage leaves the leg
   double height_error = 0;   // predicted, relative
   double roughness = 0;  // 0 to 1: how little the leg's law lets the pressure's Legendre coefficients fall
   double wall_error = 0;
@@ -86,7 +86,7 @@ class SliceModel {
   void finish_actuated(model::Fidelity fidelity);
   void small_drops(std::size_t pack);
   void summarise(model::Fidelity fidelity);
-  double model_error(std::size_t task, model::Fidelity fidelity) const;
+  double model_error(std::size_t task, const model::SegmentResult& result) const;
   void height_errors(const Block& block);
   void errors_of_start(bool rigid);
   void errors_of_start(std::span<const std::size_t> tasks, bool rigid);
