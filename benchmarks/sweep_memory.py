@@ -9,7 +9,7 @@ def main():
     print_load("before")
     print(f"{'designs':>10} {'MB of each rank':>20} {'archive, GB':>12} {'s':>6}")
     for designs in DESIGNS:
-        run = Sweep(RANKS, *STRETCH_AND_VOLTAGE, "-sweep_samples", designs)
+        run = Sweep(RANKS, *STRETCH_AND_VOLTAGE, "-sweep_samples", designs, watch_memory=True)
         peaks = ", ".join(f"{peak / 1e6:.1f}" for _, peak in sorted(run.peak.items()))
         print(f"{designs:10} {peaks:>20} {run.bytes / 1e9:12.3f} {run.wall:6.1f}", flush=True)
     print_load("after")

@@ -37,9 +37,9 @@ SUMMARY = {  # name: its place in the summary of a sweep
 
 class Sweep:
     """One sweep in a folder of its own: what its summary says is in `said`, by name; `peak` is the largest memory of
-    each rank [bytes], `wall` what the run took with start and end [s]."""
+    each rank [bytes] where it is watched, which takes half a core; `wall` what the run took with start and end [s]."""
 
-    def __init__(self, ranks, *words, keep=False):
+    def __init__(self, ranks, *words, keep=False, watch_memory=False):
         folder = pathlib.Path(tempfile.mkdtemp(prefix="gaiter_benchmark_"))
         try:
             start = time.monotonic()
@@ -47,11 +47,11 @@ class Sweep:
             run = subprocess.Popen([str(word) for word in command], cwd=folder, env=ENVIRONMENT, text=True,
                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True)
             self.peak = {}
-            while run.poll() is None:
+            while watch_memory and run.poll() is None:
                 self.peak.update(peaks_of(run.pid))
                 time.sleep(0.02)
-            self.wall = time.monotonic() - start
             out, err = run.communicate()
+            self.wall = time.monotonic() - start
             if run.returncode not in (0, 3):
                 sys.exit(f"{' '.join(map(str, command))}\nended with {run.returncode}\n{out}{err}")
             self.said = {name: float(found[1]) for name, text in SUMMARY.items() if (found := re.search(text, out))}
