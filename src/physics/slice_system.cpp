@@ -162,7 +162,8 @@ void SliceSystem::set_segments(std::size_t first_pack, std::span<const Pack> hei
     for (int i = 0; i < pack_width; ++i) {
       const double taper = constants.upper_radius[i] - constants.lower_radius[i];
       radii[k][i] = constants.lower_radius[i] + heights[k][i] * taper;
-      rows[SliceShape::gap][i] = ((heights[k][i] - 0.5) * taper + constants.gap[i]) / constants.inner_radius[i];
+      rows[SliceShape::gap][i] =
+          ((heights[k][i] - 0.5) * taper + constants.gap[i]) / constants.inner_radius[i];
     }
     set_radius(shape_, constants.inner_radius, radii[k], {}, rows);
   }

@@ -104,8 +104,7 @@ model::SegmentResult summarise_sliding(const SlidingOutcome& outcome, double hei
     result.electric_field_max = std::max(result.electric_field_max, slice.electric_field);
   if (result.status == model::Status::pulled_in)
     result.electric_field_max = std::numeric_limits<double>::quiet_NaN();
-  result.discretisation_error =
-      std::max(result.discretisation_error, wall_error + sliding_error(actuated));
+  result.discretisation_error = std::max(result.discretisation_error, wall_error + sliding_error(actuated));
   model::derive_error(result);
   return result;
 }

@@ -19,8 +19,8 @@ struct AxisymChange {
 // where the dual says nothing: the state is inadmissible or no longer stable on the finer mesh.
 //
 // Measured at tapers of 2 to 20 degrees, stretch 1.05 to 2.2, 0 and 6 kV, orders 2 and 3, the first two
-// meshes, against order 4 refined twice: of errors of the mean pressure above 1e-6 the estimate is 0.28 of the
-// error or more, 0.95 in the median. It is too large, up to 17 times, where the vertex nearest to the end
+// meshes, against order 4 refined twice: of errors of the mean pressure above 1e-6 the estimate is 0.28 of
+// the error or more, 0.95 in the median. It is too large, up to 17 times, where the vertex nearest to the end
 // that lifts off happens to be at the right place. Below 1e-6 it says nothing but that. The output plus the
 // change is 3 and 9 times as accurate as the output (medians on the two meshes), but in a sixth of the cases
 // less, so that it is not what is reported. @note Collective.

@@ -22,7 +22,7 @@ struct SlicePlan {
   int slice_count = 6;  // Gauss points, in each piece between cuts
   int wall_points = 3;
   std::vector<double> cuts = {};  // heights in (0, 1), ascending, where the bandage leaves the leg
-  double height_error = 0;   // predicted, relative
+  double height_error = 0;        // predicted, relative
   double roughness = 0;  // 0 to 1: how little the leg's law lets the pressure's Legendre coefficients fall
   double wall_error = 0;
   double model_error = 0;    // against the finest model that the goal allows

@@ -12,11 +12,11 @@ namespace gaiter::studies {
 
 // How a sweep went on this rank, and how it ended on all.
 struct SweepReport {
-  int signal = 0;             // that ended it before all was done; 0: it is complete
-  std::int64_t missing = 0;   // designs not solved yet, of all ranks
-  std::int64_t taken_up = 0;  // designs that earlier runs had solved
+  int signal = 0;                 // that ended it before all was done; 0: it is complete
+  std::int64_t missing = 0;       // designs not solved yet, of all ranks
+  std::int64_t taken_up = 0;      // designs that earlier runs had solved
   bool already_complete = false;  // an earlier run had made the archive whole
-  double seconds = 0;         // the run took, the same on all ranks
+  double seconds = 0;             // the run took, the same on all ranks
   // Of this rank:
   std::int64_t designs = 0;
   double equilibria = 0;
