@@ -7,7 +7,6 @@
 // sliding slices and meshes. Costs: processor time where a mesh was solved, else plan_cost. Usage:
 // auto_axisym_study [-scenes 100] [-skip 0] [-refine 2]
 #include <petscsys.h>
-#include <time.h>
 
 #include <algorithm>
 #include <array>
@@ -19,6 +18,7 @@
 #include "gaiter/solvers/auto_model.hpp"
 #include "gaiter/solvers/axisym_model.hpp"
 #include "gaiter/solvers/sliding_model.hpp"
+#include "processor_time.hpp"
 #include "sobol_scenes.hpp"
 
 namespace {
@@ -26,12 +26,6 @@ namespace {
 using namespace gaiter;
 using model::Fidelity;
 using solvers::SegmentTask;
-
-double processor_seconds() {
-  timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
 
 double error_of(const model::SegmentResult& found, const model::SegmentResult& truth) {
   const auto relative = [](double a, double b) { return b > 0 ? std::fabs(a / b - 1) : std::fabs(a); };

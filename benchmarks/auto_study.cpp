@@ -7,7 +7,6 @@
 // wall; measured seconds of both; and how the true error compares with the estimated one. Costs are those of
 // plan_cost, whose fit to measured times is printed first. Usage: auto_study [-scenes 2000]
 #include <petscsys.h>
-#include <time.h>
 
 #include <algorithm>
 #include <array>
@@ -18,6 +17,7 @@
 #include "gaiter/petsc/session.hpp"
 #include "gaiter/physics/segment_forecast.hpp"
 #include "gaiter/solvers/auto_model.hpp"
+#include "processor_time.hpp"
 #include "sobol_scenes.hpp"
 
 namespace {
@@ -26,13 +26,6 @@ using namespace gaiter;
 using model::Fidelity;
 using solvers::SegmentTask;
 using solvers::SlicePlan;
-
-// Of this process: others may run beside it.
-double processor_seconds() {
-  timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
 
 double error_of(const model::SegmentResult& found, const model::SegmentResult& truth) {
   const auto relative = [](double a, double b) { return b > 0 ? std::fabs(a / b - 1) : std::fabs(a); };

@@ -6,24 +6,18 @@
 // Usage: axisym_effectivity [-axisym_...]
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <vector>
 
 #include "gaiter/petsc/session.hpp"
 #include "gaiter/solvers/axisym_case.hpp"
 #include "gaiter/solvers/axisym_enriched.hpp"
 #include "paper_scene.hpp"
+#include "processor_time.hpp"
 
 namespace {
 
 using namespace gaiter;
 using solvers::AxisymResolution;
-
-double processor_seconds() {
-  timespec time;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
 
 model::Scene cone(double degrees, double stretch) {
   model::Scene scene = paper::cylinder(39.6e-3, stretch);

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 
 #include "gaiter/petsc/check.hpp"
 #include "gaiter/petsc/session.hpp"
@@ -15,25 +14,14 @@
 #include "gaiter/solvers/model_error.hpp"
 #include "gaiter/solvers/sliding_model.hpp"
 #include "paper_scene.hpp"
+#include "processor_time.hpp"
 
 namespace {
 
 using namespace gaiter;
 
-double processor_seconds() {
-  timespec time;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
 model::Scene cone(double degrees, double stretch, double voltage, bool held) {
-  model::Scene scene = paper::cylinder(39.6e-3, stretch, voltage);
-  model::Segment& segment = scene.leg.segments[0];
-  const double half = 0.5 * segment.height * std::tan(degrees * M_PI / 180);
-  segment.lower_radius -= half;
-  segment.upper_radius += half;
-  scene.leg.variant = model::ComplianceVariant::anchored;
-  scene.discretisation.slice_count = 6;
+  model::Scene scene = paper::cone(degrees, stretch, voltage);
   if (held) scene.contact_axial = model::ContactAxial::held;
   return scene;
 }

@@ -19,14 +19,8 @@ namespace {
 using namespace gaiter;
 using solvers::AxisymOutput;
 
-// The paper's radius and compliance on a cone of its height.
 model::Scene cone(double degrees, double stretch, double voltage = 0) {
-  model::Scene scene = paper::cylinder(39.6e-3, stretch, voltage);
-  model::Segment& segment = scene.leg.segments[0];
-  const double half = 0.5 * segment.height * std::tan(degrees * M_PI / 180);
-  segment.lower_radius -= half;
-  segment.upper_radius += half;
-  scene.leg.variant = model::ComplianceVariant::anchored;
+  model::Scene scene = paper::cone(degrees, stretch, voltage);
   scene.fidelity = model::Fidelity::axisym;
   return scene;
 }

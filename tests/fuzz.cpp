@@ -174,9 +174,9 @@ int main(int argc, char** argv) {
     if (word == "--from") from = static_cast<unsigned>(std::stoul(argv[++i]));
   }
   petsc::Session session({});
-  char folder[] = "/tmp/gaiter_fuzz_XXXXXX";
-  if (!mkdtemp(folder)) return 1;
-  const std::string path = std::string(folder) + "/x.h5";
+  std::string folder = std::filesystem::temp_directory_path() / "gaiter_fuzz_XXXXXX";
+  if (!mkdtemp(folder.data())) return 1;
+  const std::string path = folder + "/x.h5";
   std::fflush(stdout);
   const int shown = dup(STDOUT_FILENO);
   const int nowhere = open("/dev/null", O_WRONLY);

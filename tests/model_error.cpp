@@ -14,17 +14,7 @@
 namespace {
 
 using namespace gaiter;
-
-model::Scene cone(double degrees, double stretch, double voltage = 0) {
-  model::Scene scene = paper::cylinder(39.6e-3, stretch, voltage);
-  model::Segment& segment = scene.leg.segments[0];
-  const double half = 0.5 * segment.height * std::tan(degrees * M_PI / 180);
-  segment.lower_radius -= half;
-  segment.upper_radius += half;
-  scene.leg.variant = model::ComplianceVariant::anchored;
-  scene.discretisation.slice_count = 6;
-  return scene;
-}
+using paper::cone;
 
 struct Compared {
   solvers::ModelError estimated;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-2-Clause
 #pragma once
 
+#include <cmath>
+
 #include "gaiter/model/scene.hpp"
 
 namespace gaiter::paper {
@@ -32,6 +34,18 @@ inline model::Scene cylinder(double radius, double stretch, double voltage = 0) 
   scene.bandage.modules.resize(1);
   scene.leg.segments[0].lower_radius = scene.leg.segments[0].upper_radius = radius;
   scene.discretisation.slice_count = 1;
+  return scene;
+}
+
+// The paper's radius, height and ankle compliance (anchored) on a cone.
+inline model::Scene cone(double degrees, double stretch, double voltage = 0) {
+  model::Scene scene = paper::cylinder(39.6e-3, stretch, voltage);
+  model::Segment& segment = scene.leg.segments[0];
+  const double half = 0.5 * segment.height * std::tan(degrees * M_PI / 180);
+  segment.lower_radius -= half;
+  segment.upper_radius += half;
+  scene.leg.variant = model::ComplianceVariant::anchored;
+  scene.discretisation.slice_count = 6;
   return scene;
 }
 
