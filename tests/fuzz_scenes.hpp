@@ -161,17 +161,24 @@ inline std::map<std::string, std::string> plain_scene(Draw& draw) {
   return given;
 }
 
-struct Words {
-  std::vector<std::string> words;  // option, value, option, value; without the command
-  bool sliding = false;
-};
-
-inline Words command_line(Draw& draw, bool with_axisym) {
+// Option, value, option, value; without the command.
+inline std::vector<std::string> command_line(Draw& draw, bool with_axisym) {
   auto given = plain_scene(draw);
   const double kind = draw.uniform(0, 1);
-  given["fidelity"] = kind < 0.15 ? "rigid" : kind < 0.8 || !with_axisym ? "slice" : "axisym";
-  Words line;
-  if (draw.chance(0.12)) given["fidelity"] = "sliding", line.sliding = true;
+  given["fidelity"] = kind < 0.12                  ? "rigid"
+                      : kind < 0.2                 ? "first_order"
+                      : kind < 0.3                 ? "sliding"
+                      : kind < 0.45                ? "auto"
+                      : kind < 0.8 || !with_axisym ? "slice"
+                                                   : "axisym";
+  if (given["fidelity"] == "auto") {
+    given["accuracy"] = text(draw.logarithmic(1e-7, 1));
+    given["auto_up_to"] =
+        draw.chance(with_axisym ? 0.5 : 1) ? draw.chance(0.7) ? "slice" : "sliding" : "axisym";
+    static const std::vector<std::string> outputs = {"pressure_rest", "pressure_actuated",
+                                                     "pressure_rest,actuation_drop", "volume_change"};
+    if (draw.chance(0.5)) given["outputs"] = draw.of(outputs);
+  }
   // Other options of the table.
   const auto table = studies::option_table();
   for (int extra = draw.below(4); extra > 0; --extra) {
@@ -179,7 +186,7 @@ inline Words command_line(Draw& draw, bool with_axisym) {
         table[static_cast<std::size_t>(draw.below(static_cast<int>(table.size())))];
     if (option.kind == studies::Kind::text || option.name == "fidelity" ||
         option.name.starts_with("axisym") || option.name.starts_with("sweep") ||
-        option.name == "comparison" || option.name == "dry_run")
+        option.name == "comparison" || option.name == "dry_run" || option.name == "plan")
       continue;
     given[studies::name_for(option, given["leg_segments"].substr(0, given["leg_segments"].find(',')))] =
         value_of(draw, option);
@@ -215,11 +222,12 @@ inline Words command_line(Draw& draw, bool with_axisym) {
         if (all.size() > 1) all.pop_back();
     }
   }
+  std::vector<std::string> words;
   for (const auto& [name, value] : all) {
-    line.words.push_back("-" + name);
-    if (!value.empty()) line.words.push_back(value);
+    words.push_back("-" + name);
+    if (!value.empty()) words.push_back(value);
   }
-  return line;
+  return words;
 }
 
 }  // namespace gaiter::fuzz

@@ -249,8 +249,14 @@ TEST(Errors, WallLeavesNoHole) {
                {"less than 0.04 m"});
   EXPECT_EQ(error_of(two_segments_with({{"bandage_length_at", "inner"}, {"bandage_thickness", "40 mm"}})),
             "");
-  expect_error(two_segments_with({{"bandage_high_length", "1 cm"}, {"bandage_thickness", "2 mm"}}),
-               {"high", "length 0.01 m", "less than 0.00159155 m"});
+  expect_error(two_segments_with({{"bandage_high_length", "2 cm"}, {"bandage_thickness", "4 mm"}}),
+               {"high", "length 0.02 m", "less than 0.0031831 m"});
+}
+
+TEST(Errors, LengthOutOfStretch) {
+  expect_error(two_segments_with({{"bandage_high_length", "10 mm"}}),
+               {"-bandage_high_length '0.01 m'", "stretches the module by", "at least 0.001 and at most 20"});
+  expect_error(two_segments_with({{"bandage_high_length", "900 m"}}), {"-bandage_high_length '900 m'"});
 }
 
 TEST(Errors, MissingAndExclusiveOptions) {

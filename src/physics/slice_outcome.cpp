@@ -35,7 +35,8 @@ inline __attribute__((always_inline)) void record(const SliceShape& shape, const
     const double pressure = state.pressure[i] * scale[i];
     const double radius = outcomes.leg_radius[i] * (1 - state.strain[i]);
     outcomes.iterations[i] = larger(outcomes.iterations[i], state.iterations[i]);
-    const bool diverged = state.open[i] > 0 || state.failed[i] > 0;
+    // The estimate to first order may crush a soft leg to nothing.
+    const bool diverged = state.open[i] > 0 || state.failed[i] > 0 || state.strain[i] >= 1;
     const double found = diverged                   ? number_of(Status::diverged)
                          : pressure > data_limit[i] ? number_of(Status::extrapolated)
                                                     : number_of(Status::contact);

@@ -37,6 +37,20 @@ std::string put_design(const Designs& designs, std::span<const double> values, m
   return "";
 }
 
+namespace {
+
+void check_stretch(const model::Segment& segment, const model::Module& module) {
+  if (!(module.length > 0)) return;  // an option of its own
+  static const Option &stretch = option("bandage_stretch"), &length = option("bandage_<s>_length");
+  const double found = 2 * std::numbers::pi * segment.mean_radius() / module.length;
+  const Range& range = stretch.component(0).range;
+  if (found < range.low || found > range.high)
+    throw InputError(fmt::format("-{} '{} m': stretches the module by {:.6g}, which must be {}",
+                                 name_for(length, segment.name), module.length, found, allowed(stretch, 0)));
+}
+
+}  // namespace
+
 void check_scene(const model::Scene& scene) {
   const model::Bandage& bandage = scene.bandage;
   for (std::size_t i = 0; i < bandage.modules.size(); ++i) {
@@ -44,6 +58,7 @@ void check_scene(const model::Scene& scene) {
     const model::Segment& segment = scene.leg.segments[i];
     const double radius =
         module.length > 0 ? module.length / (2 * std::numbers::pi) : segment.mean_radius() / module.stretch;
+    check_stretch(segment, module);
     // The hole's radius: the reference radius less the part of the wall inside it.
     const double inside = bandage.length_at == model::LengthAt::outer    ? bandage.thickness
                           : bandage.length_at == model::LengthAt::middle ? 0.5 * bandage.thickness
