@@ -88,7 +88,7 @@ int main(int argc, char** argv) {
       "units from um to km, mPa to MPa, mV to MV: values of a scene within {} ulp, results within {:.1f} "
       "times their condition number times eps\n",
       units.ulps, units.amplification);
-  const auto many = extremes::solve_many(1000000, 200);
+  const auto many = extremes::solve_many(0, 1000000, 200);
   fmt::print(
       "1e6 slices in one system: {} unsolved; of {} the largest error of the pressure is {:.1e}, {} have "
       "other bits than alone\n",

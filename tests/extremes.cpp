@@ -39,10 +39,20 @@ TEST(Extremes, UnitsDoNotMatter) {
 }
 
 TEST(Extremes, ManySlicesOfVeryDifferentScaleInOneSystem) {
-  const auto found = extremes::solve_many(20000, 40);
+  const auto found = extremes::solve_many(0, 20000, 40);
   EXPECT_EQ(found.unsolved, 0);
   EXPECT_EQ(found.other_bits, 0u);
   EXPECT_LE(found.error, 5e-9);
+}
+
+// Crushed at one end of the bracket and far from the leg's pressure at the other, where Newton's step and the
+// far step used to take turns.
+TEST(Extremes, StepsThatTookTurns) {
+  for (const std::size_t slice : {147366, 296378, 580038, 770836, 889170}) {
+    const auto found = extremes::solve_many(slice, 1, 1);
+    EXPECT_EQ(found.unsolved, 0) << slice;
+    EXPECT_LE(found.error, 1e-9) << slice;
+  }
 }
 
 }  // namespace

@@ -88,16 +88,19 @@ struct SystemFinding {
   double unsolved = 0;
 };
 
-// `count` slices, stiffnesses over ten and walls over four decades, in one system at rest; `sampled` of them
-// against the reference and against themselves alone.
-inline SystemFinding solve_many(std::size_t count, int sampled) {
-  const auto scene_of = [](std::size_t i) {
-    Sampler draw(static_cast<unsigned>(i));
-    Scene scene = paper_case(draw, 1 + draw.logarithmic(1e-3, 3), 0).scene;
-    scene.bandage.thickness = draw.logarithmic(1e-7, 1e-3);
-    scene.bandage.ogden = {{draw.logarithmic(1, 1e10), 3.5}};
-    return scene;
-  };
+// Stiffnesses over ten and walls over four decades.
+inline Scene one_of_many(std::size_t i) {
+  Sampler draw(static_cast<unsigned>(i));
+  Scene scene = paper_case(draw, 1 + draw.logarithmic(1e-3, 3), 0).scene;
+  scene.bandage.thickness = draw.logarithmic(1e-7, 1e-3);
+  scene.bandage.ogden = {{draw.logarithmic(1, 1e10), 3.5}};
+  return scene;
+}
+
+// The slices [first, first + count) of these in one system at rest; `sampled` of them against the reference
+// and against themselves alone.
+inline SystemFinding solve_many(std::size_t first, std::size_t count, int sampled) {
+  const auto scene_of = [&](std::size_t i) { return one_of_many(first + i); };
   physics::SliceShape shape;
   shape.wall = physics::gauss_legendre(6);
   const auto put = [&](physics::SliceSystem& system, std::size_t place, const Scene& scene) {

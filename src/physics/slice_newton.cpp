@@ -154,7 +154,10 @@ void advance_newton(const SliceShape& shape, const Pack* rows, const Pack& direc
     const bool inside = wanted > low && wanted < high;
     const double floor = low > 0 ? low : 0;
     const double middle = low > 0 ? std::sqrt(low * high) : 0.5 * (floor + high);
-    const double chosen = inside ? wanted : middle;
+    // Beyond the middle of a bracket, a far step and Newton's way back could go on for ever.
+    const bool leap =
+        remote[i] > 0 && low > 0 && (state.pressure_residual[i] < 0 ? wanted > middle : wanted < middle);
+    const double chosen = inside && !leap ? wanted : middle;
     quadratic[i] = inside && !crushed && !(remote[i] > 0) ? 1 : 0;
     trial[i] = state.open[i] > 0 ? chosen : state.pressure[i];
   }

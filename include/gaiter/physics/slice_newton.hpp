@@ -52,8 +52,8 @@ void solve_blocks(const Pack& strain_slope, const Pack& bandage_slope, const Pac
 
 // One damped Newton step of each open slice, P - direction, and the residual there. Far from the solution,
 // where bandage and leg differ by more than a factor of four, Newton's step for ln P = ln P_t is taken if it
-// is the larger. A slice closes when its next step is predicted to leave a relative error below `tolerance`;
-// that step is still taken.
+// is the larger, though not past the middle of the bracket. A slice closes when its next step is predicted to
+// leave a relative error below `tolerance`; that step is still taken.
 void advance_newton(const SliceShape& shape, const Pack* rows, const Pack& direction, double tolerance,
                     PackState& state);
 
