@@ -28,3 +28,5 @@ gaiter_add_test(architecture LABEL architecture
 add_executable(fuzz fuzz.cpp)
 target_link_libraries(fuzz PRIVATE gaiter_studies Boost::headers)
 gaiter_add_test(fuzz LABEL command_line TIMEOUT 600 COMMAND $<TARGET_FILE:fuzz> --scenes 600)
+gaiter_add_test(fuzz_processes LABEL command_line TIMEOUT 300 COMMAND $<TARGET_FILE:fuzz> --scenes 25 --seed 5
+                --program $<TARGET_FILE:gaiter>)

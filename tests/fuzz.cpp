@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-2-Clause
 // Many random command lines through the whole program in one process, options to archive:
-//   fuzz [--scenes 400] [--seed 1] [--from 0] [--axisym]
+//   fuzz [--scenes 400] [--seed 1] [--from 0] [--axisym] [--program build/bin/gaiter]
+// or, with --program, each through a process of its own.
 // Each must end with an exit code of 0, 2 or 3 in bounded time. With 2 nothing is written and one line names
 // an option; else every number in the archive that its status vouches for is finite and makes sense, and
 // single slices are in equilibrium by the reference's own equations.
@@ -14,6 +15,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "fuzz_process.hpp"
 #include "fuzz_scenes.hpp"
 #include "gaiter/archive/reader.hpp"
 #include "gaiter/base/error.hpp"
@@ -68,6 +70,20 @@ Outcome run(petsc::Session& session, const std::vector<std::string>& words) {
   } catch (const std::exception& error) {
     outcome.code = studies::internal_failure;
     outcome.complaint = error.what();
+  }
+  return outcome;
+}
+
+// The same by the program itself, whose message is one line.
+Outcome run_apart(const std::string& program, std::vector<std::string> words) {
+  words.insert(words.begin(), "solve");
+  const fuzz::Ended ended = fuzz::run_process(program, words);
+  Outcome outcome{ended.code, "", ""};
+  if (ended.signal) outcome.complaint = fmt::format("ended by signal {}", ended.signal);
+  if (ended.code == studies::wrong_input) {
+    outcome.message = ended.errors;
+    if (!outcome.message.empty() && outcome.message.back() == '\n') outcome.message.pop_back();
+    if (!outcome.message.starts_with("gaiter: ")) outcome.complaint = "the message is not the program's";
   }
   return outcome;
 }
@@ -176,11 +192,13 @@ std::string check_archive(const std::string& path, int code, const std::vector<s
 int main(int argc, char** argv) {
   unsigned scenes = 400, seed = 1, from = 0;
   bool axisym = false;
+  std::string program;
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
     if (word == "--axisym") axisym = true;
     if (i + 1 >= argc) continue;
     if (word == "--scenes") scenes = static_cast<unsigned>(std::stoul(argv[++i]));
+    if (word == "--program") program = argv[++i];
     if (word == "--seed") seed = static_cast<unsigned>(std::stoul(argv[++i]));
     if (word == "--from") from = static_cast<unsigned>(std::stoul(argv[++i]));
   }
@@ -205,7 +223,7 @@ int main(int argc, char** argv) {
     for (const std::string& word : words) current_words += " '" + word.substr(0, 200) + "'";
     current_words += "\n";
     alarm(seconds_allowed);
-    Outcome outcome = run(session, words);
+    Outcome outcome = program.empty() ? run(session, words) : run_apart(program, words);
     const bool written = !std::filesystem::is_empty(folder);
     if (outcome.complaint.empty() && outcome.code == studies::wrong_input) {
       if (written) outcome.complaint = "wrong input, but a file was written";
