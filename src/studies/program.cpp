@@ -140,7 +140,7 @@ int solve(const Request& request, const CommandLine& line) {
   if (!request.axisym_view.empty())
     observer = [&](solvers::AxisymFields found) { fields.push_back(std::move(found)); };
   const Solution solution = solve_scene(PETSC_COMM_WORLD, request.scene, observer);
-  archive::Layout layout{1, {}, {}, request.output_variables};
+  archive::Layout layout{1, {}, {}, request.columns};
   for (const model::Segment& segment : request.scene.leg.segments) layout.segments.push_back(segment.name);
   const archive::Provenance provenance = provenance_of(request, line);
   const std::vector<model::SegmentResult> rows = gather(PETSC_COMM_WORLD, solution);

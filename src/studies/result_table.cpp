@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "gaiter/archive/schema.hpp"
+#include "gaiter/studies/plan_table.hpp"
 
 namespace gaiter::studies {
 
@@ -96,6 +97,7 @@ std::string result_table(const model::Scene& scene, std::span<const model::Segme
           segment.name, r.discretisation_error);
   }
   notes += error_note(results);
+  if (scene.fidelity == model::Fidelity::automatic) notes += taken_text(scene, results);
   for (std::size_t status = 1; status < seen.size(); ++status)
     if (seen[status])
       notes += fmt::format("{}: {}\n", archive::word(static_cast<model::Status>(status)),

@@ -50,6 +50,7 @@ Request Parser::run() {
   read_sampling();
   give_bases();
   apply();
+  choose_columns();
   check_designs();
   request_.text = resolved_text();
   return std::move(request_);
@@ -186,6 +187,19 @@ void Parser::read_output_variables(const Given& given) {
   }
   for (const std::string& name : names)
     if (std::ranges::find(chosen, name) != chosen.end()) request_.output_variables.push_back(name);
+}
+
+// Those given, or all that there are: without -fidelity auto nothing was planned.
+void Parser::choose_columns() {
+  request_.columns = request_.output_variables;
+  if (request_.scene.fidelity == model::Fidelity::automatic || command_ == Command::tradeoff) return;
+  const bool all = request_.columns.empty();
+  for (const archive::Column& column : archive::columns()) {
+    const std::string name(column.name);
+    if (all && !column.of_plan) request_.columns.push_back(name);
+    if (!all && column.of_plan && std::ranges::find(request_.columns, name) != request_.columns.end())
+      throw InputError(fmt::format("-output_variables '{}': is known with -fidelity 'auto' alone", name));
+  }
 }
 
 // Values a scene cannot do without, and those that exclude each other.

@@ -55,10 +55,14 @@ struct SegmentResult {
   double error_estimate = 0;        // discretisation_error, plus model_error where that is known [1]
   double discretisation_error = 0;  // relative, of the pressures, against the same model resolved [1]
   double model_error = 0;  // what the models beyond this one would change, as far as known; NaN: unknown [1]
-  int slice_count = 0;     // over the height; 0: finite elements
-  int wall_points = 0;     // through the wall; 0: finite elements
-  int unknowns = 0;        // of the system solved; of a whole leg: its share [1]
-  int iterations = 0;      // Newton or fixed-point steps, the most of any slice
+  // What -fidelity auto expected when it chose the model; NaN: not known beforehand, or nothing was chosen.
+  double planned_discretisation_error = std::numeric_limits<double>::quiet_NaN();  // relative [1]
+  double planned_model_error = std::numeric_limits<double>::quiet_NaN();  // by the models still allowed [1]
+  double planned_cost = std::numeric_limits<double>::quiet_NaN();         // processor time [s]
+  int slice_count = 0;  // over the height; 0: finite elements
+  int wall_points = 0;  // through the wall; 0: finite elements
+  int unknowns = 0;     // of the system solved; of a whole leg: its share [1]
+  int iterations = 0;   // Newton or fixed-point steps, the most of any slice
   Status status = Status::contact;
   Fidelity fidelity = Fidelity::slice;
 };

@@ -48,6 +48,7 @@ class Parser {
   void read_settings();
   void read_outputs(const Given& given);
   void read_output_variables(const Given& given);
+  void choose_columns();
   void read_axis(const Given& given);
   std::optional<Match> match(std::string_view lower_name, const Given& given) const;
   Match match_swept(std::string_view lower_name, const Given& given) const;
