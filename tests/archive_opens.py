@@ -22,7 +22,7 @@ REALS = {
     "planned_discretisation_error": "1", "planned_model_error": "1", "planned_cost": "s",
 }
 FLAGS = {
-    "status": "contact slack lifted extrapolated pulled_in no_equilibrium diverged invalid",
+    "status": "contact slack lifted extrapolated pulled_in no_equilibrium diverged invalid not_wanted",
     "fidelity": "rigid slice sliding axisym first_order",
 }
 PER_CASE = {

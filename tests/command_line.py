@@ -243,6 +243,29 @@ class Plan(InFolder):
                 self.assertIn("unknowns", file)
 
 
+    def test_segments_without_wanted_output_are_left_out(self):
+        auto = (*BARE, "-fidelity", "auto", "-auto_up_to", "slice")
+        some = (*auto, "-outputs", "r5.pressure_rest,r2.actuation_drop")
+        plan = self.run_gaiter("solve", *some, "-plan").out.splitlines()[2:]
+        self.assertEqual([line.split()[0] for line in plan], ["r5", "r2"])
+        run = self.run_gaiter("solve", *some, "-output", "some.h5")
+        self.assertIn("not_wanted: no output of the segment is among -outputs", run.out)
+        run = self.run_gaiter("sweep", *some, "-sweep_bandage_stretch", "2.2,2", "-output", "sweep.h5")
+        self.assertNotIn("no trustworthy result", run.out)
+        self.run_gaiter("solve", *auto, "-outputs", "actuation_drop", "-output", "all.h5")
+        with h5py.File(self.folder / "some.h5") as some, h5py.File(self.folder / "sweep.h5") as sweep, \
+                h5py.File(self.folder / "all.h5") as everything:
+            words = some["status"].attrs["flag_meanings"].split()
+            self.assertEqual([words[i] == "not_wanted" for i in some["status"][0]],
+                             [True, False, True, True, False, True])
+            for name in ("pressure_rest", "actuation_drop", "error_estimate", "planned_cost", "volume_initial"):
+                self.assertTrue(np.isnan(some[name][0, [0, 2, 3, 5]]).all(), name)
+                np.testing.assert_array_equal(some[name][0], sweep[name][0], name)
+            self.assertTrue(np.isfinite(some["pressure_rest"][0, [1, 4]]).all())
+            self.assertTrue(np.isnan(some["actuation_drop"][0, 1]))
+            self.assertEqual(some["actuation_drop"][0, 4], everything["actuation_drop"][0, 4])
+
+
 class Petsc(InFolder):
     def test_its_options_are_accepted_and_work(self):
         said = {

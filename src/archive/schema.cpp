@@ -112,8 +112,8 @@ constexpr std::array table{
     Column{"fidelity", "", "model that gave the results of the segment", &Row::fidelity},
 };
 
-constexpr std::array status_words{"contact",   "slack",          "lifted",   "extrapolated",
-                                  "pulled_in", "no_equilibrium", "diverged", "invalid"};
+constexpr std::array status_words{"contact",        "slack",    "lifted",  "extrapolated", "pulled_in",
+                                  "no_equilibrium", "diverged", "invalid", "not_wanted"};
 static_assert(status_words.size() == model::status_count);
 
 constexpr std::array fidelity_words{"rigid", "slice", "sliding", "axisym", "first_order"};

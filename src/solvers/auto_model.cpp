@@ -82,7 +82,7 @@ void choose_points(const SegmentForecast& forecast, double tolerance, SlicePlan&
 // Rigid leg, first order or slices, to a tolerance of the pressures.
 SlicePlan plan_slices(const model::Scene& scene, std::size_t segment, const SegmentForecast& forecast,
                       double tolerance) {
-  const model::Goal& goal = scene.goal;
+  const model::Goal goal = scene.goal.of(segment);
   SlicePlan plan;
   plan.actuated = goal.actuated();
   plan.cuts = forecast.cuts();
@@ -106,7 +106,7 @@ SlicePlan plan_slices(const model::Scene& scene, std::size_t segment, const Segm
 }
 
 SlicePlan plan_for(const model::Scene& scene, std::size_t segment, SegmentForecast& forecast) {
-  const model::Goal& goal = scene.goal;
+  const model::Goal goal = scene.goal.of(segment);
   forecast.want(goal.pressure_rest || goal.actuation_drop, goal.actuated());
   const double factor = worst_factor(goal, forecast);
   const double share = goal.up_to == Fidelity::slice ? 1 : share_of_slices;
@@ -146,7 +146,7 @@ double of_shifts(const model::Goal& goal, const physics::ModelShifts& shifts,
 
 SlicePlan climb(const model::Scene& scene, std::size_t segment, const SlicePlan& slices,
                 const model::SegmentResult& result) {
-  const model::Goal& goal = scene.goal;
+  const model::Goal goal = scene.goal.of(segment);
   const physics::ModelErrors errors = physics::model_errors(scene, segment, result);
   const bool sliding_only = goal.up_to == Fidelity::sliding;
   const bool wrinkles = std::isnan(slices.change_beyond);

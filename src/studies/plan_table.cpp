@@ -46,6 +46,7 @@ std::string line(const model::Segment& segment, model::Fidelity fidelity, const 
 std::string one_design(const model::Scene& scene) {
   std::string text = head();
   for (std::size_t i = 0; i < scene.leg.segments.size(); ++i) {
+    if (!scene.wants(i)) continue;
     const SlicePlan plan = solvers::plan_segment(scene, i);
     text += line(scene.leg.segments[i], plan.fidelity, resolution(plan), plan.height_error + plan.wall_error,
                  plan.model_error, plan.cost);
@@ -72,6 +73,7 @@ std::string plan_text(const Request& request, const Designs& designs) {
       continue;
     }
     for (std::size_t i = 0; i < scene.leg.segments.size(); ++i) {
+      if (!scene.wants(i)) continue;
       const SlicePlan plan = solvers::plan_segment(scene, i);
       ++shares[plan.fidelity].segments;
       shares[plan.fidelity].cost += plan.cost + solvers::planning_cost;

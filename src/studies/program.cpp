@@ -100,7 +100,7 @@ void print_sweep(const Request& request, const Designs& designs, const archive::
 ExitCode exit_code(std::span<const std::int64_t> counts) {
   std::int64_t failed = 0;
   for (std::size_t i = 0; i < counts.size(); ++i)
-    if (!model::trustworthy(static_cast<model::Status>(i))) failed += counts[i];
+    if (model::failed(static_cast<model::Status>(i))) failed += counts[i];
   return failed == 0 ? success : untrustworthy;
 }
 

@@ -20,13 +20,19 @@ enum class Status : signed char {
   pulled_in,       // under voltage the bandage has no equilibrium of its own and none on the leg
   no_equilibrium,  // none exists in the admissible range of radii
   diverged,        // the solver gave up; the numbers are NaN
-  invalid          // not solved: the values of this design of a sweep make no possible scene
+  invalid,         // not solved: the values of this design of a sweep make no possible scene
+  not_wanted       // not solved: -fidelity auto, and no output of this segment is wanted
 };
-constexpr std::size_t status_count = static_cast<std::size_t>(Status::invalid) + 1;
+constexpr std::size_t status_count = static_cast<std::size_t>(Status::not_wanted) + 1;
 
 // True where the numbers of a result can be used (pulled_in: the pressure is 0, as computed).
 constexpr bool trustworthy(Status status) {
   return status < Status::no_equilibrium;
+}
+
+// True where there should be a result and is none.
+constexpr bool failed(Status status) {
+  return !trustworthy(status) && status != Status::not_wanted;
 }
 
 // What every fidelity reports of one segment of one design. Names as in the archive.

@@ -10,8 +10,8 @@
 
 namespace gaiter::studies {
 
-// What -fidelity auto would do, from the forecast alone: a line a segment or, of many designs, a line a
-// model. Throws base::InputError with another fidelity, which leaves nothing to plan.
+// What -fidelity auto would do, from the forecast alone: a line a wanted segment or, of many designs, a line
+// a model. Throws base::InputError with another fidelity, which leaves nothing to plan.
 std::string plan_text(const Request& request, const Designs& designs);
 
 // What it took of one design, once solved: a line a segment that was planned.
