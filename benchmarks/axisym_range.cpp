@@ -21,8 +21,9 @@ namespace {
 using namespace gaiter;
 
 std::string name_of(model::Status status) {
-  constexpr const char* names[model::status_count] = {
-      "contact", "slack", "lifted", "extrapolated", "pulled_in", "no_equilibrium", "diverged", "invalid"};
+  constexpr const char* names[model::status_count] = {"contact",      "slack",     "lifted",
+                                                      "extrapolated", "pulled_in", "no_equilibrium",
+                                                      "diverged",     "invalid",   "not_wanted"};
   return names[static_cast<std::size_t>(status)];
 }
 

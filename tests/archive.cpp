@@ -44,6 +44,7 @@ TEST(Schema, WordsAreThoseOfTheEnumerations) {
   EXPECT_EQ(word(model::Status::pulled_in), "pulled_in");
   EXPECT_EQ(word(model::Status::no_equilibrium), "no_equilibrium");
   EXPECT_EQ(word(model::Status::diverged), "diverged");
+  EXPECT_EQ(word(model::Status::not_wanted), "not_wanted");
   EXPECT_EQ(word(model::Fidelity::rigid), "rigid");
   EXPECT_EQ(word(model::Fidelity::slice), "slice");
 }

@@ -19,9 +19,10 @@ REALS = {
     "pressure_rest_change": "1", "pressure_actuated_change": "1", "actuation_drop": "Pa", "actuation_pressure": "Pa", "volume_initial": "m3", "volume_rest": "m3",
     "volume_actuated": "m3", "volume_change": "1", "radius_actuated": "m", "stretch_actual": "1", "slip_max": "m",
     "electric_field_max": "V m-1", "voltage_stable": "V", "error_estimate": "1", "discretisation_error": "1", "model_error": "1",
+    "planned_discretisation_error": "1", "planned_model_error": "1", "planned_cost": "s",
 }
 FLAGS = {
-    "status": "contact slack lifted extrapolated pulled_in no_equilibrium diverged invalid",
+    "status": "contact slack lifted extrapolated pulled_in no_equilibrium diverged invalid not_wanted",
     "fidelity": "rigid slice sliding axisym first_order",
 }
 PER_CASE = {

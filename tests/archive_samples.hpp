@@ -90,6 +90,9 @@ inline SegmentResult sample_row(std::size_t row) {
   result.error_estimate = 20000 + x;
   result.discretisation_error = 21000 + x;
   result.model_error = 22000 + x;
+  result.planned_discretisation_error = 23000 + x;
+  result.planned_model_error = 24000 + x;
+  result.planned_cost = 25000 + x;
   result.slice_count = static_cast<int>(200000 + row);
   result.wall_points = static_cast<int>(300000 + row);
   result.unknowns = static_cast<int>(400000 + row);
@@ -204,6 +207,9 @@ inline void expect_rows(const Archive& archive, const std::vector<SegmentResult>
   expect("error_estimate", &SegmentResult::error_estimate);
   expect("discretisation_error", &SegmentResult::discretisation_error);
   expect("model_error", &SegmentResult::model_error);
+  expect("planned_discretisation_error", &SegmentResult::planned_discretisation_error);
+  expect("planned_model_error", &SegmentResult::planned_model_error);
+  expect("planned_cost", &SegmentResult::planned_cost);
   expect("slices_used", &SegmentResult::slice_count);
   expect("wall_points_used", &SegmentResult::wall_points);
   expect("unknowns", &SegmentResult::unknowns);

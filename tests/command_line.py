@@ -210,6 +210,62 @@ class Sweeps(InFolder):
         self.assertTrue((pressure[0, 1:] < pressure[1, 1:]).all())
 
 
+PLANNED = ("planned_discretisation_error", "planned_model_error", "planned_cost")
+
+
+class Plan(InFolder):
+    def test_the_archive_has_what_was_planned(self):
+        auto = (*BARE, "-fidelity", "auto", "-auto_up_to", "slice", "-accuracy", "1e-3")
+        shown = self.run_gaiter("solve", *auto, "-plan").out.splitlines()[2:]
+        solved = self.run_gaiter("solve", *auto).out
+        self.run_gaiter("sweep", *auto, "-sweep_bandage_stretch", "1.4,2.2", "-output", "sweep.h5")
+        with h5py.File(self.folder / "paper.h5") as file, h5py.File(self.folder / "sweep.h5") as sweep:
+            words = file["fidelity"].attrs["flag_meanings"].split()
+            for i, line in enumerate(shown):
+                _, model, *_, discretisation, beyond, cost = line.split()
+                self.assertEqual(words[file["fidelity"][0, i]], model)
+                for name, text, unit in zip(PLANNED, (discretisation, beyond, cost), (1, 1, 1e-6)):
+                    # Printed to two or three digits, stored to eight binary ones and no less.
+                    value = file[name][0, i]
+                    np.testing.assert_allclose(value, float(text) * unit, rtol=0.06, err_msg=name)
+                    self.assertEqual(value, sweep[name][1, i], name)
+                    self.assertEqual(np.frexp(value)[0] * 512 % 1, 0, name)
+                self.assertLess(file["planned_discretisation_error"][0, i] + file["planned_model_error"][0, i], 1e-3)
+            self.assertIn(f"{file['planned_model_error'][0, 0]:.1e}", solved.split("taken")[1])
+            self.assertTrue(set(PLANNED) <= set(sweep))
+
+    def test_nothing_is_planned_otherwise(self):
+        self.run_gaiter("solve", *BARE)
+        self.run_gaiter("sweep", *BARE, "-sweep_bandage_stretch", "1.4,2.2", "-output", "sweep.h5")
+        for name in ("paper.h5", "sweep.h5"):
+            with h5py.File(self.folder / name) as file:
+                self.assertFalse(set(PLANNED) & set(file))
+                self.assertIn("unknowns", file)
+
+
+    def test_segments_without_wanted_output_are_left_out(self):
+        auto = (*BARE, "-fidelity", "auto", "-auto_up_to", "slice")
+        some = (*auto, "-outputs", "r5.pressure_rest,r2.actuation_drop")
+        plan = self.run_gaiter("solve", *some, "-plan").out.splitlines()[2:]
+        self.assertEqual([line.split()[0] for line in plan], ["r5", "r2"])
+        run = self.run_gaiter("solve", *some, "-output", "some.h5")
+        self.assertIn("not_wanted: no output of the segment is among -outputs", run.out)
+        run = self.run_gaiter("sweep", *some, "-sweep_bandage_stretch", "2.2,2", "-output", "sweep.h5")
+        self.assertNotIn("no trustworthy result", run.out)
+        self.run_gaiter("solve", *auto, "-outputs", "actuation_drop", "-output", "all.h5")
+        with h5py.File(self.folder / "some.h5") as some, h5py.File(self.folder / "sweep.h5") as sweep, \
+                h5py.File(self.folder / "all.h5") as everything:
+            words = some["status"].attrs["flag_meanings"].split()
+            self.assertEqual([words[i] == "not_wanted" for i in some["status"][0]],
+                             [True, False, True, True, False, True])
+            for name in ("pressure_rest", "actuation_drop", "error_estimate", "planned_cost", "volume_initial"):
+                self.assertTrue(np.isnan(some[name][0, [0, 2, 3, 5]]).all(), name)
+                np.testing.assert_array_equal(some[name][0], sweep[name][0], name)
+            self.assertTrue(np.isfinite(some["pressure_rest"][0, [1, 4]]).all())
+            self.assertTrue(np.isnan(some["actuation_drop"][0, 1]))
+            self.assertEqual(some["actuation_drop"][0, 4], everything["actuation_drop"][0, 4])
+
+
 class Petsc(InFolder):
     def test_its_options_are_accepted_and_work(self):
         said = {

@@ -148,6 +148,7 @@ std::string check_archive(const std::string& path, int code, const std::vector<s
       const double value = variable.numbers[row];
       // Without friction a leg that does not give way may have no equilibrium where a soft one has.
       const bool may_be_missing = name == "voltage_stable" || name == "model_error" ||
+                                  name.starts_with("planned_") ||
                                   (meshed && (name == "discretisation_error" || name == "error_estimate")) ||
                                   (frictionless && of_rigid_leg(name)) || (unwanted && of_voltage(name)) ||
                                   (here == model::Status::pulled_in &&

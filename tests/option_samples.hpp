@@ -58,6 +58,9 @@ inline std::string describe(const model::Scene& scene) {
   text += fmt::format("{} {}\n", leg.shear_modulus, bandage.bulk_modulus);
   text += fmt::format("{} {} {} {} {} {}\n", goal.accuracy, int(goal.up_to), goal.pressure_rest,
                       goal.pressure_actuated, goal.actuation_drop, goal.volume_change);
+  for (const model::Wanted& of : goal.of_segment)
+    text += fmt::format("{} {} {} {}\n", of.pressure_rest, of.pressure_actuated, of.actuation_drop,
+                        of.volume_change);
   text += fmt::format("{} {}\n", leg.radius_scale, leg.compliance_scale);
   return text;
 }

@@ -140,6 +140,24 @@ TEST(Scene, SegmentValueWinsOverGeneralValue) {
   EXPECT_EQ(modules[1].voltage, 5000);
 }
 
+// A name alone is wanted of all segments; what only one carries leaves the others unsolved.
+TEST(Scene, OutputsOfOneSegment) {
+  model::Scene scene =
+      solve_with({{"fidelity", "auto"}, {"outputs", "pressure_rest, HIGH.volume_change"}}).scene;
+  EXPECT_TRUE(scene.goal.of(0).pressure_rest && scene.goal.of(1).pressure_rest);
+  EXPECT_FALSE(scene.goal.of(0).actuated());
+  EXPECT_TRUE(scene.goal.of(1).volume_change);
+  scene = solve_with({{"fidelity", "auto"}, {"outputs", "low.actuation_drop"}, {"accuracy", "1e-4"}}).scene;
+  EXPECT_TRUE(scene.wants(0) && scene.goal.of(0).actuation_drop && !scene.goal.of(0).pressure_rest);
+  EXPECT_FALSE(scene.wants(1));
+  EXPECT_EQ(scene.goal.of(0).accuracy, 1e-4);
+  scene.fidelity = model::Fidelity::slice;  // which solves all
+  EXPECT_TRUE(scene.wants(1));
+  scene = solve_with({{"fidelity", "auto"}, {"outputs", "volume_change"}}).scene;
+  EXPECT_TRUE(scene.goal.of_segment.empty() && scene.goal.of(1).volume_change &&
+              !scene.goal.of(1).pressure_rest);
+}
+
 TEST(Scene, SegmentsStandAnkleUpAndNamesIgnoreCase) {
   Given given = two_segments_with({{"Bandage_HIGH_Voltage", "1 kV"}});
   given["leg_segments"] = "Low, high";
@@ -307,6 +325,7 @@ TEST(ResolvedText, GivesTheSameRequestAgain) {
                                          {"comparison", "paper"},
                                          {"wall_points", "5"},
                                          {"slice_rule", "midpoint"},
+                                         {"outputs", "pressure_rest,HIGH.actuation_drop"},
                                          {"dry_run", ""},
                                          {"output", "elsewhere.h5"}});
   const Request first = parse_request(Command::solve, given);

@@ -29,6 +29,14 @@ class Report(InFolder):
                 self.assertIn(f"{value / 1000:.4f}", text)
             self.assertIn(html.escape(file.attrs["command"]), text)
 
+    def test_a_plan(self):
+        self.run_gaiter("solve", *SCENE, "-fidelity", "auto", "-auto_up_to", "slice", "-output", "one.h5")
+        text = self.page("one")
+        self.assertIn("<th>expected error of discretisation</th>", text)
+        with h5py.File(self.folder / "one.h5") as file:
+            for value in file["planned_discretisation_error"][0]:
+                self.assertIn(f"<td>{value:.1e}</td>", text)
+
     def test_sweeps(self):
         sweep = ("sweep", *SCENE, "-progress", "off", "-sweep_bandage_stretch")
         self.run_gaiter(*sweep, "linspace(1.4,2,4)", "-sweep_voltage", "linspace(0 V,10 kV,3)", "-output", "grid.h5")

@@ -13,6 +13,10 @@ STUDIES = {
                      "0.9,1.05,1.2,2.6", "-sweep_voltage", "0 kV,12 kV,25 kV"],
     "fixed point": ["sweep", "-options_file", PAPER, "-comparison", "none", "-slice_solver", "fixed_point",
                     "-sweep_bandage_stretch", "1.4,2.2"],
+    "auto": ["sweep", "-options_file", PAPER, "-comparison", "none", "-fidelity", "auto", "-auto_up_to", "slice",
+             "-accuracy", "1e-4", "-sweep_bandage_stretch", "1.1,1.4,2.2", "-sweep_voltage", "0 kV,11.3 kV"],
+    "some segments": ["solve", "-options_file", PAPER, "-comparison", "none", "-fidelity", "auto", "-auto_up_to", "slice",
+                      "-outputs", "r5.pressure_rest,r2.actuation_drop,r1.volume_change"],
     "sliding": ["sweep", "-options_file", PAPER, "-comparison", "none", "-fidelity", "sliding",
                 "-sweep_bandage_stretch", "1.4,2.2"],
     # Legs that are solved as a whole stay on one rank.

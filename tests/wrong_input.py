@@ -42,6 +42,11 @@ CASES = {
     "list too short": (["solve", *SCENE, "-leg_r6_compliance", "0.01,1e-5"], ["-leg_r6_compliance", "4 values"]),
     "unequal lists": (["solve", *SCENE, "-bandage_ogden_mu", "20 kPa"], ["-bandage_ogden_mu", "-bandage_ogden_alpha"]),
     "fraction of a layer": (["solve", *SCENE, "-bandage_layers", "1.5"], ["-bandage_layers", "whole number"]),
+    "nothing was planned": (["solve", *SCENE, "-output_variables", "pressure_rest,planned_cost"],
+                            ["-output_variables 'planned_cost'", "-fidelity 'auto'"]),
+    "unknown output": (["solve", *SCENE, "-outputs", "r6.volume"], ["-outputs 'r6.volume'", "volume_change"]),
+    "output of an unknown segment": (["solve", *SCENE, "-outputs", "pressure_rest,r9.pressure_rest"],
+                                     ["-outputs", "unknown segment 'r9'", "r6, r5, r4, r3, r2, r1"]),
     "unknown word": (["solve", *SCENE, "-slice_rule", "simpson"], ["-slice_rule", "'simpson'", "gauss or midpoint"]),
     "not yes or no": (["solve", *SCENE, "-dry_run", "perhaps"], ["-dry_run", "'perhaps'", "true or false"]),
     # values that do not go together

@@ -88,6 +88,19 @@ constexpr std::array table{
         "estimated relative change of the pressures by the models beyond this one, as far as known: the leg "
         "that gives way, the bandage that slides; NaN where unknown",
         &Row::model_error},
+    Column{
+        "planned_discretisation_error", "1",
+        "what -fidelity auto expected of discretisation_error when it chose the model; NaN where that shows "
+        "only when solved",
+        &Row::planned_discretisation_error, true},
+    Column{
+        "planned_model_error", "1",
+        "relative error of the pressures, against the finest model allowed, that -fidelity auto expected of "
+        "the model when it chose it",
+        &Row::planned_model_error, true},
+    Column{"planned_cost", "s",
+           "processor time that -fidelity auto expected of the segment when it chose the model",
+           &Row::planned_cost, true},
     Column{"slices_used", "1", "slices over the height of the segment; 0 for finite elements",
            &Row::slice_count},
     Column{"wall_points_used", "1", "Gauss points through the wall; 0 for finite elements",
@@ -99,8 +112,8 @@ constexpr std::array table{
     Column{"fidelity", "", "model that gave the results of the segment", &Row::fidelity},
 };
 
-constexpr std::array status_words{"contact",   "slack",          "lifted",   "extrapolated",
-                                  "pulled_in", "no_equilibrium", "diverged", "invalid"};
+constexpr std::array status_words{"contact",        "slack",    "lifted",  "extrapolated", "pulled_in",
+                                  "no_equilibrium", "diverged", "invalid", "not_wanted"};
 static_assert(status_words.size() == model::status_count);
 
 constexpr std::array fidelity_words{"rigid", "slice", "sliding", "axisym", "first_order"};

@@ -82,7 +82,7 @@ void choose_points(const SegmentForecast& forecast, double tolerance, SlicePlan&
 // Rigid leg, first order or slices, to a tolerance of the pressures.
 SlicePlan plan_slices(const model::Scene& scene, std::size_t segment, const SegmentForecast& forecast,
                       double tolerance) {
-  const model::Goal& goal = scene.goal;
+  const model::Goal goal = scene.goal.of(segment);
   SlicePlan plan;
   plan.actuated = goal.actuated();
   plan.cuts = forecast.cuts();
@@ -106,7 +106,7 @@ SlicePlan plan_slices(const model::Scene& scene, std::size_t segment, const Segm
 }
 
 SlicePlan plan_for(const model::Scene& scene, std::size_t segment, SegmentForecast& forecast) {
-  const model::Goal& goal = scene.goal;
+  const model::Goal goal = scene.goal.of(segment);
   forecast.want(goal.pressure_rest || goal.actuation_drop, goal.actuated());
   const double factor = worst_factor(goal, forecast);
   const double share = goal.up_to == Fidelity::slice ? 1 : share_of_slices;
@@ -146,7 +146,7 @@ double of_shifts(const model::Goal& goal, const physics::ModelShifts& shifts,
 
 SlicePlan climb(const model::Scene& scene, std::size_t segment, const SlicePlan& slices,
                 const model::SegmentResult& result) {
-  const model::Goal& goal = scene.goal;
+  const model::Goal goal = scene.goal.of(segment);
   const physics::ModelErrors errors = physics::model_errors(scene, segment, result);
   const bool sliding_only = goal.up_to == Fidelity::sliding;
   const bool wrinkles = std::isnan(slices.change_beyond);
@@ -265,7 +265,9 @@ std::span<const model::SegmentResult> AutoModel::solve(std::span<const SegmentTa
     std::erase_if(open, [&](std::size_t t) {
       SlicePlan& plan = plans_[t];
       if (refine(plan, results_[t])) {
-        plan.cost += plan_cost(*tasks[t].scene, tasks[t].segment, plan);
+        const double once_more = plan_cost(*tasks[t].scene, tasks[t].segment, plan);
+        plan.cost += once_more;
+        plan.unforeseen += once_more;
         return false;
       }
       const Fidelity solved = plan.fidelity, up_to = tasks[t].scene->goal.up_to;
@@ -281,7 +283,11 @@ std::span<const model::SegmentResult> AutoModel::solve(std::span<const SegmentTa
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t t = 0; t < tasks.size(); ++t) {
     model::SegmentResult& result = results_[t];
-    if (plans_[t].actuated) continue;
+    const SlicePlan& plan = plans_[t];
+    result.planned_discretisation_error = model::rounded_up(plan.height_error + plan.wall_error);
+    result.planned_model_error = model::rounded_up(plan.model_error);
+    result.planned_cost = model::rounded_up(plan.cost - plan.unforeseen);
+    if (plan.actuated) continue;
     for (double* value : {&result.pressure_actuated, &result.pressure_actuated_rigid,
                           &result.pressure_actuated_area_mean, &result.pressure_actuated_change,
                           &result.actuation_drop, &result.actuation_pressure, &result.volume_actuated,

@@ -78,7 +78,8 @@ void ChunkSolver::solve_batch(std::size_t first, std::size_t designs) {
   const std::size_t segments = scenes_[0].leg.segments.size();
   tasks_.clear();
   for (std::size_t k = 0; k < designs; ++k)
-    for (std::size_t s = 0; sound_[k] && s < segments; ++s) tasks_.push_back({&scenes_[k], s});
+    for (std::size_t s = 0; sound_[k] && s < segments; ++s)
+      if (scenes_[k].wants(s)) tasks_.push_back({&scenes_[k], s});
   std::vector<model::SegmentResult> others;
   std::span<const model::SegmentResult> results;
   const model::Fidelity fidelity = scenes_[0].fidelity;
@@ -98,12 +99,13 @@ void ChunkSolver::solve_batch(std::size_t first, std::size_t designs) {
   for (std::size_t k = 0; k < designs; ++k) {
     bool failed = false;
     for (std::size_t s = 0; s < segments; ++s) {
+      const bool solved = sound_[k] && scenes_[k].wants(s);
       const model::SegmentResult result =
-          sound_[k] ? results[next++]
-                    : model::without_numbers(model::Status::invalid, fidelity == model::Fidelity::automatic
-                                                                         ? model::Fidelity::slice
-                                                                         : fidelity);
-      failed = failed || !model::trustworthy(result.status);
+          solved ? results[next++]
+                 : model::without_numbers(
+                       sound_[k] ? model::Status::not_wanted : model::Status::invalid,
+                       fidelity == model::Fidelity::automatic ? model::Fidelity::slice : fidelity);
+      failed = failed || model::failed(result.status);
       chunk_.rows[(first + k) * segments + s] = result;
     }
     chunk_.failed += failed;

@@ -21,22 +21,35 @@ std::string error_text(double error) {
   return std::isnan(error) ? "when solved" : fmt::format("{:.1e}", error);
 }
 
+std::string slices_text(std::size_t slices, int wall_points) {
+  return fmt::format("{} x {}", slices, wall_points);
+}
+
+// As planned; what was solved has rows of its own.
 std::string resolution(const SlicePlan& plan) {
   if (plan.fidelity == model::Fidelity::axisym) return fmt::format("refine {}", plan.slice_count);
-  return fmt::format("{} x {}", static_cast<std::size_t>(plan.slice_count) * (plan.cuts.size() + 1),
-                     plan.wall_points);
+  return slices_text(static_cast<std::size_t>(plan.slice_count) * (plan.cuts.size() + 1), plan.wall_points);
+}
+
+std::string head() {
+  return fmt::format("{:<10}{:<12}{:>14}{:>16}{:>13}{:>11}\n{:<10}{:<12}{:>14}{:>16}{:>13}{:>11}\n",
+                     "segment", "model", "resolution", "discretisation", "model", "time", "", "",
+                     "height x wall", "error", "error", "us");
+}
+
+std::string line(const model::Segment& segment, model::Fidelity fidelity, const std::string& resolution,
+                 double discretisation_error, double model_error, double cost) {
+  return fmt::format("{:<10}{:<12}{:>14}{:>16}{:>13}{:>11.3g}\n", segment.name, archive::word(fidelity),
+                     resolution, error_text(discretisation_error), error_text(model_error), 1e6 * cost);
 }
 
 std::string one_design(const model::Scene& scene) {
-  std::string text = fmt::format(
-      "{:<10}{:<12}{:>14}{:>16}{:>13}{:>11}\n{:<10}{:<12}{:>14}{:>16}{:>13}{:>11}\n", "segment", "model",
-      "resolution", "discretisation", "model", "time", "", "", "height x wall", "error", "error", "us");
+  std::string text = head();
   for (std::size_t i = 0; i < scene.leg.segments.size(); ++i) {
+    if (!scene.wants(i)) continue;
     const SlicePlan plan = solvers::plan_segment(scene, i);
-    text += fmt::format("{:<10}{:<12}{:>14}{:>16}{:>13}{:>11.3g}\n", scene.leg.segments[i].name,
-                        archive::word(plan.fidelity), resolution(plan),
-                        error_text(plan.height_error + plan.wall_error), error_text(plan.model_error),
-                        1e6 * plan.cost);
+    text += line(scene.leg.segments[i], plan.fidelity, resolution(plan), plan.height_error + plan.wall_error,
+                 plan.model_error, plan.cost);
   }
   return text;
 }
@@ -60,6 +73,7 @@ std::string plan_text(const Request& request, const Designs& designs) {
       continue;
     }
     for (std::size_t i = 0; i < scene.leg.segments.size(); ++i) {
+      if (!scene.wants(i)) continue;
       const SlicePlan plan = solvers::plan_segment(scene, i);
       ++shares[plan.fidelity].segments;
       shares[plan.fidelity].cost += plan.cost + solvers::planning_cost;
@@ -70,6 +84,21 @@ std::string plan_text(const Request& request, const Designs& designs) {
     text += fmt::format("{:<12}{:>10} segments{:>11.3g} s\n", archive::word(fidelity), share.segments,
                         share.cost);
   if (invalid > 0) text += fmt::format("{} designs are invalid\n", invalid);
+  return text;
+}
+
+std::string taken_text(const model::Scene& scene, std::span<const model::SegmentResult> results) {
+  std::string text = "taken, with the errors and the time that were expected:\n" + head();
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const model::SegmentResult& result = results[i];
+    if (std::isnan(result.planned_cost)) continue;  // not planned, or not in the archive
+    const std::string found =
+        result.fidelity == model::Fidelity::axisym
+            ? fmt::format("{} unknowns", result.unknowns)
+            : slices_text(static_cast<std::size_t>(result.slice_count), result.wall_points);
+    text += line(scene.leg.segments[i], result.fidelity, found, result.planned_discretisation_error,
+                 result.planned_model_error, result.planned_cost);
+  }
   return text;
 }
 

@@ -100,7 +100,7 @@ void print_sweep(const Request& request, const Designs& designs, const archive::
 ExitCode exit_code(std::span<const std::int64_t> counts) {
   std::int64_t failed = 0;
   for (std::size_t i = 0; i < counts.size(); ++i)
-    if (!model::trustworthy(static_cast<model::Status>(i))) failed += counts[i];
+    if (model::failed(static_cast<model::Status>(i))) failed += counts[i];
   return failed == 0 ? success : untrustworthy;
 }
 
@@ -140,7 +140,7 @@ int solve(const Request& request, const CommandLine& line) {
   if (!request.axisym_view.empty())
     observer = [&](solvers::AxisymFields found) { fields.push_back(std::move(found)); };
   const Solution solution = solve_scene(PETSC_COMM_WORLD, request.scene, observer);
-  archive::Layout layout{1, {}, {}, request.output_variables};
+  archive::Layout layout{1, {}, {}, request.columns};
   for (const model::Segment& segment : request.scene.leg.segments) layout.segments.push_back(segment.name);
   const archive::Provenance provenance = provenance_of(request, line);
   const std::vector<model::SegmentResult> rows = gather(PETSC_COMM_WORLD, solution);

@@ -52,11 +52,13 @@ std::vector<Option> program_options() {
       {.name = "outputs",
        .kind = Kind::text,
        .scope = Scope::program,
-       .format = "some of pressure_rest, pressure_actuated, actuation_drop, volume_change",
+       .format = "some of pressure_rest, pressure_actuated, actuation_drop, volume_change, of one segment as "
+                 "<s>.pressure_rest",
        .default_text = "pressure_rest, pressure_actuated",
        .example = "pressure_rest",
-       .doc = "Results whose error -fidelity auto keeps below -accuracy; without any that needs the voltage, "
-              "the actuated state is not computed."},
+       .doc = "Results whose error -fidelity auto keeps below -accuracy, of all segments or of one; without "
+              "any that needs the voltage, the actuated state is not computed, and segments without any are "
+              "not solved."},
       {.name = "output_variables",
        .kind = Kind::text,
        .scope = Scope::program,

@@ -97,10 +97,21 @@ class Report:
                 shown = [f"{x / 1000:.4f} ({x / MMHG:.2f})" if self.file[name].attrs["units"] == "Pa" else f"{x:.5f}"
                          for name, x in zip(self.results, shown)]
                 error = f"{self.file['error_estimate'][case, i]:.1e}" if "error_estimate" in self.file else ""
-                rows.append([segment, *design, *shown, error, status[self.file["status"][case, i]]])
+                rows.append([segment, *design, *shown, *self.planned(case, i), error,
+                             status[self.file["status"][case, i]]])
         head = [name.replace("_", " ") + (" kPa (mmHg)" if self.file[name].attrs["units"] == "Pa" else "")
                 for name in self.results]
-        return table(["segment", *self.swept, *head, "estimated error", "status"], rows)
+        plan = ["model", "expected error of discretisation", "of the model", "expected time (us)"]
+        return table(["segment", *self.swept, *head, *plan[:len(self.planned(0, 0))], "estimated error", "status"], rows)
+
+    def planned(self, case, i):
+        """What -fidelity auto took of a segment and expected of it; nothing in other archives."""
+        if not {"planned_discretisation_error", "planned_model_error", "planned_cost", "fidelity"} <= set(self.file):
+            return []
+        error = [self.file[f"planned_{name}_error"][case, i] for name in ("discretisation", "model")]
+        return [words_of(self.file["fidelity"])[self.file["fidelity"][case, i]],
+                *("when solved" if np.isnan(x) else f"{x:.1e}" for x in error),
+                f"{1e6 * self.file['planned_cost'][case, i]:.3g}"]
 
     def bars(self):
         names = [name for name in ("pressure_rest_rigid", "pressure_rest", "pressure_actuated") if name in self.file]

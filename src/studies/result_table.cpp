@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "gaiter/archive/schema.hpp"
+#include "gaiter/studies/plan_table.hpp"
 
 namespace gaiter::studies {
 
@@ -37,6 +38,8 @@ std::string_view meaning(model::Status status) {
       return "the solver did not converge";
     case model::Status::invalid:
       return "the values of the design make no possible scene; it was not solved";
+    case model::Status::not_wanted:
+      return "no output of the segment is among -outputs; it was not solved";
   }
   return "";
 }
@@ -84,7 +87,8 @@ std::string result_table(const model::Scene& scene, std::span<const model::Segme
                         pressure(r.pressure_actuated), r.actuation_drop, r.pressure_rest_rigid / 1000,
                         100 * r.volume_change, r.iterations, archive::word(r.status));
     seen[static_cast<std::size_t>(r.status)] = true;
-    if (r.voltage_stable < scene.bandage.modules[i].voltage)
+    const bool at_rest_alone = model::trustworthy(r.status) && std::isnan(r.pressure_actuated);
+    if (r.voltage_stable < scene.bandage.modules[i].voltage && !at_rest_alone)
       notes += fmt::format("{}: stable up to {:.3g} kV\n", segment.name, r.voltage_stable * 1e-3);
     if (r.electric_field_max > scene.bandage.breakdown_field)
       notes +=
@@ -96,6 +100,7 @@ std::string result_table(const model::Scene& scene, std::span<const model::Segme
           segment.name, r.discretisation_error);
   }
   notes += error_note(results);
+  if (scene.fidelity == model::Fidelity::automatic) notes += taken_text(scene, results);
   for (std::size_t status = 1; status < seen.size(); ++status)
     if (seen[status])
       notes += fmt::format("{}: {}\n", archive::word(static_cast<model::Status>(status)),
@@ -111,7 +116,7 @@ std::string status_summary(std::span<const std::int64_t> counts, const std::stri
     rows += counts[i];
     if (counts[i] > 0)
       text += fmt::format("  {:>10} segments {}: {}\n", counts[i], archive::word(status), meaning(status));
-    if (!model::trustworthy(status)) failed += counts[i];
+    if (model::failed(status)) failed += counts[i];
   }
   if (failed > 0)
     text += fmt::format(

@@ -50,6 +50,7 @@ Request Parser::run() {
   read_sampling();
   give_bases();
   apply();
+  choose_columns();
   check_designs();
   request_.text = resolved_text();
   return std::move(request_);
@@ -156,19 +157,44 @@ void Parser::read_settings() {
   }
 }
 
+std::size_t Parser::segment_of_output(const Given& given, std::string_view name) const {
+  const auto& segments = request_.scene.leg.segments;
+  for (std::size_t i = 0; i < segments.size(); ++i)
+    if (base::lower(segments[i].name) == base::lower(name)) return i;
+  throw value_error(option("outputs"), given.name, given.text,
+                    fmt::format("unknown segment '{}', the segments are {}", name, names_of(segments)));
+}
+
+// NAME is wanted of all segments, SEGMENT.NAME of one.
 void Parser::read_outputs(const Given& given) {
+  using model::Wanted;
+  const std::vector<std::pair<std::string, bool Wanted::*>> outputs{
+      {"pressure_rest", &Wanted::pressure_rest},
+      {"pressure_actuated", &Wanted::pressure_actuated},
+      {"actuation_drop", &Wanted::actuation_drop},
+      {"volume_change", &Wanted::volume_change}};
+  const auto& segments = request_.scene.leg.segments;
   model::Goal& goal = request_.scene.goal;
-  const std::vector<std::pair<std::string, bool*>> outputs{{"pressure_rest", &goal.pressure_rest},
-                                                           {"pressure_actuated", &goal.pressure_actuated},
-                                                           {"actuation_drop", &goal.actuation_drop},
-                                                           {"volume_change", &goal.volume_change}};
-  for (const auto& [name, wanted] : outputs) *wanted = false;
+  static_cast<Wanted&>(goal) = {false, false, false, false};
+  std::vector<Wanted> own(segments.size(), goal);
+  bool differ = false;
   for (const std::string_view item : base::split(given.text)) {
-    const auto found = std::ranges::find(outputs, base::trim(item), [](const auto& o) { return o.first; });
+    const std::string_view word = base::trim(item);
+    const auto dot = word.find('.');
+    const std::string_view name = dot == std::string_view::npos ? word : word.substr(dot + 1);
+    const auto found = std::ranges::find(outputs, name, [](const auto& output) { return output.first; });
     if (found == outputs.end()) throw value_error(option("outputs"), given.name, given.text);
-    *found->second = true;
-    request_.outputs.push_back(found->first);
+    if (dot == std::string_view::npos) {
+      goal.*(found->second) = true;
+      for (Wanted& wanted : own) wanted.*(found->second) = true;
+      request_.outputs.push_back(found->first);
+    } else {
+      const std::size_t segment = segment_of_output(given, word.substr(0, dot));
+      own[segment].*(found->second) = differ = true;
+      request_.outputs.push_back(fmt::format("{}.{}", segments[segment].name, found->first));
+    }
   }
+  if (differ) goal.of_segment = std::move(own);
 }
 
 void Parser::read_output_variables(const Given& given) {
@@ -186,6 +212,19 @@ void Parser::read_output_variables(const Given& given) {
   }
   for (const std::string& name : names)
     if (std::ranges::find(chosen, name) != chosen.end()) request_.output_variables.push_back(name);
+}
+
+// Those given, or all that there are: without -fidelity auto nothing was planned.
+void Parser::choose_columns() {
+  request_.columns = request_.output_variables;
+  if (request_.scene.fidelity == model::Fidelity::automatic || command_ == Command::tradeoff) return;
+  const bool all = request_.columns.empty();
+  for (const archive::Column& column : archive::columns()) {
+    const std::string name(column.name);
+    if (all && !column.of_plan) request_.columns.push_back(name);
+    if (!all && column.of_plan && std::ranges::find(request_.columns, name) != request_.columns.end())
+      throw InputError(fmt::format("-output_variables '{}': is known with -fidelity 'auto' alone", name));
+  }
 }
 
 // Values a scene cannot do without, and those that exclude each other.

@@ -28,7 +28,8 @@ Solution solve_scene(MPI_Comm comm, const model::Scene& scene, const solvers::Ax
 
   const double start = MPI_Wtime();
   std::vector<solvers::SegmentTask> tasks;
-  for (std::size_t segment = first; segment < last; ++segment) tasks.push_back({&scene, segment});
+  for (std::size_t segment = first; segment < last; ++segment)
+    if (scene.wants(segment)) tasks.push_back({&scene, segment});
 
   // Ranks without tasks take part too.
   Solution solution{first, {}, 0};
@@ -42,6 +43,10 @@ Solution solve_scene(MPI_Comm comm, const model::Scene& scene, const solvers::Ax
     solution.rows = solvers::solve_sliding(comm, tasks);
   else
     solution.rows = solvers::solve_segments(comm, tasks);
+  for (std::size_t segment = first; segment < last; ++segment)
+    if (!scene.wants(segment))
+      solution.rows.insert(solution.rows.begin() + static_cast<std::ptrdiff_t>(segment - first),
+                           model::without_numbers(model::Status::not_wanted, model::Fidelity::slice));
   // Of a group, the first rank keeps the results.
   if (petsc::rank(groups.group) > 0) solution.rows.clear();
   solution.seconds = petsc::largest(comm, MPI_Wtime() - start);

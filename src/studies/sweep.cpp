@@ -46,7 +46,7 @@ double process_seconds() {
 }
 
 archive::Layout layout_of(const Request& request, const Designs& designs) {
-  archive::Layout layout{static_cast<std::size_t>(designs.size()), {}, {}, request.output_variables};
+  archive::Layout layout{static_cast<std::size_t>(designs.size()), {}, {}, request.columns};
   for (const model::Segment& segment : request.scene.leg.segments) layout.segments.push_back(segment.name);
   for (const SweepAxis& axis : designs.axes())
     layout.swept.push_back({axis.name, std::string(axis.unit()), std::string(axis.option->doc)});

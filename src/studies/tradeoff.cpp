@@ -24,7 +24,7 @@ constexpr int timings = 3;
 
 using Output = double model::SegmentResult::*;
 
-std::vector<Output> wanted_outputs(const model::Goal& goal) {
+std::vector<Output> wanted_outputs(const model::Wanted& goal) {
   std::vector<Output> outputs;
   if (goal.pressure_rest) outputs.push_back(&model::SegmentResult::pressure_rest);
   if (goal.pressure_actuated) outputs.push_back(&model::SegmentResult::pressure_actuated);
@@ -39,7 +39,7 @@ double largest_difference(const model::Goal& goal, const std::vector<model::Segm
   double largest = none;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (!model::trustworthy(reference[i].status)) continue;
-    for (const Output output : wanted_outputs(goal)) {
+    for (const Output output : wanted_outputs(goal.of(i))) {
       const double value = rows[i].*output, exact = reference[i].*output;
       if (exact == 0 && value == 0) continue;
       largest = std::fmax(largest, std::fabs(value - exact) / std::fabs(exact));
@@ -50,7 +50,10 @@ double largest_difference(const model::Goal& goal, const std::vector<model::Segm
 
 model::Scene repeated(const model::Scene& scene, std::size_t times) {
   model::Scene wide = scene;
+  auto& wanted = wide.goal.of_segment;
+  const std::vector<model::Wanted> once = wanted;
   for (std::size_t k = 1; k < times; ++k) {
+    wanted.insert(wanted.end(), once.begin(), once.end());
     wide.leg.segments.insert(wide.leg.segments.end(), scene.leg.segments.begin(), scene.leg.segments.end());
     wide.bandage.modules.insert(wide.bandage.modules.end(), scene.bandage.modules.begin(),
                                 scene.bandage.modules.end());
@@ -61,13 +64,15 @@ model::Scene repeated(const model::Scene& scene, std::size_t times) {
 // Of a segment and processor; `seconds`: what the scene by itself took.
 double segment_time(MPI_Comm comm, const model::Scene& scene, double seconds) {
   const std::size_t segments = scene.leg.segments.size();
+  double solved = 0;
+  for (std::size_t i = 0; i < segments; ++i) solved += scene.wants(i) ? 1 : 0;
   const double processors = std::min<double>(petsc::size(comm), static_cast<double>(segments));
-  if (seconds > shortest_timing) return seconds * processors / static_cast<double>(segments);
+  if (seconds > shortest_timing) return seconds * processors / solved;
   const std::size_t times = std::max<std::size_t>(1, most_segments / segments);
   const model::Scene wide = repeated(scene, times);
   double shortest = std::numeric_limits<double>::infinity();
   for (int k = 0; k < timings; ++k) shortest = std::min(shortest, solve_scene(comm, wide).seconds);
-  return shortest * petsc::size(comm) / static_cast<double>(times * segments);
+  return shortest * petsc::size(comm) / (static_cast<double>(times) * solved);
 }
 
 double largest_estimate(const RungResult& rung) {

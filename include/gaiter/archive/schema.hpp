@@ -27,6 +27,7 @@ struct Column {
   std::string_view unit;  // udunits spelling, empty for enumerations
   std::string_view long_name;
   Field field;
+  bool of_plan = false;  // known with -fidelity auto alone
 };
 
 // The whole table, in the order of the fields. Nothing else in the program lists the variables.

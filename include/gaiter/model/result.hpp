@@ -20,13 +20,19 @@ enum class Status : signed char {
   pulled_in,       // under voltage the bandage has no equilibrium of its own and none on the leg
   no_equilibrium,  // none exists in the admissible range of radii
   diverged,        // the solver gave up; the numbers are NaN
-  invalid          // not solved: the values of this design of a sweep make no possible scene
+  invalid,         // not solved: the values of this design of a sweep make no possible scene
+  not_wanted       // not solved: -fidelity auto, and no output of this segment is wanted
 };
-constexpr std::size_t status_count = static_cast<std::size_t>(Status::invalid) + 1;
+constexpr std::size_t status_count = static_cast<std::size_t>(Status::not_wanted) + 1;
 
 // True where the numbers of a result can be used (pulled_in: the pressure is 0, as computed).
 constexpr bool trustworthy(Status status) {
   return status < Status::no_equilibrium;
+}
+
+// True where there should be a result and is none.
+constexpr bool failed(Status status) {
+  return !trustworthy(status) && status != Status::not_wanted;
 }
 
 // What every fidelity reports of one segment of one design. Names as in the archive.
@@ -55,10 +61,14 @@ struct SegmentResult {
   double error_estimate = 0;        // discretisation_error, plus model_error where that is known [1]
   double discretisation_error = 0;  // relative, of the pressures, against the same model resolved [1]
   double model_error = 0;  // what the models beyond this one would change, as far as known; NaN: unknown [1]
-  int slice_count = 0;     // over the height; 0: finite elements
-  int wall_points = 0;     // through the wall; 0: finite elements
-  int unknowns = 0;        // of the system solved; of a whole leg: its share [1]
-  int iterations = 0;      // Newton or fixed-point steps, the most of any slice
+  // What -fidelity auto expected when it chose the model; NaN: not known beforehand, or nothing was chosen.
+  double planned_discretisation_error = std::numeric_limits<double>::quiet_NaN();  // relative [1]
+  double planned_model_error = std::numeric_limits<double>::quiet_NaN();  // by the models still allowed [1]
+  double planned_cost = std::numeric_limits<double>::quiet_NaN();         // processor time [s]
+  int slice_count = 0;  // over the height; 0: finite elements
+  int wall_points = 0;  // through the wall; 0: finite elements
+  int unknowns = 0;     // of the system solved; of a whole leg: its share [1]
+  int iterations = 0;   // Newton or fixed-point steps, the most of any slice
   Status status = Status::contact;
   Fidelity fidelity = Fidelity::slice;
 };

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-2-Clause
 #pragma once
 
+#include <cstddef>
+#include <vector>
+
 #include "gaiter/model/bandage.hpp"
 #include "gaiter/model/leg.hpp"
 
@@ -10,7 +13,7 @@ namespace gaiter::model {
 enum class Fidelity { rigid, slice, sliding, axisym, first_order, automatic };
 enum class SliceRule { gauss, midpoint };
 enum class SliceSolver { newton, fixed_point };
-enum class ContactAxial { free, held };  // along the leg: lubricated, or as laid on
+enum class ContactAxial { free, held };              // along the leg: lubricated, or as laid on
 
 // How finely, and by which algorithm, the slice model is solved.
 struct Discretisation {
@@ -38,13 +41,24 @@ struct AxisymChoice {
   int ranks_per_case = 1;  // that share one mesh
 };
 
-// What -fidelity auto is to reach.
-struct Goal {
-  double accuracy = 1e-3;             // relative, of each wanted output [1]
-  Fidelity up_to = Fidelity::axisym;  // the finest model that may be taken
+// Outputs whose errors count.
+struct Wanted {
   bool pressure_rest = true, pressure_actuated = true, actuation_drop = false, volume_change = false;
 
   bool actuated() const { return pressure_actuated || actuation_drop || volume_change; }
+  bool any() const { return pressure_rest || actuated(); }
+};
+
+// What -fidelity auto is to reach.
+struct Goal : Wanted {
+  double accuracy = 1e-3;               // relative, of each wanted output [1]
+  Fidelity up_to = Fidelity::axisym;    // the finest model that may be taken
+  std::vector<Wanted> of_segment = {};  // where segments differ: of each; empty: all want the same
+
+  Goal of(std::size_t segment) const {
+    return {
+        of_segment.empty() ? static_cast<const Wanted&>(*this) : of_segment[segment], accuracy, up_to, {}};
+  }
 };
 
 // Everything a solve needs: leg, bandage, loads (the modules' voltages) and how to solve.
@@ -56,6 +70,9 @@ struct Scene {
   Discretisation discretisation;
   AxisymChoice axisym;
   Goal goal;
+
+  // -fidelity auto leaves out segments of which nothing is wanted.
+  bool wants(std::size_t segment) const { return fidelity != Fidelity::automatic || goal.of(segment).any(); }
 };
 
 }  // namespace gaiter::model

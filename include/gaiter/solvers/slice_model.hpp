@@ -30,6 +30,7 @@ struct SlicePlan {
   double tolerance = 0;      // of the discretisation
   double factor = 1;         // errors of the wanted outputs over those of the pressures
   double cost = 0;           // predicted [s]
+  double unforeseen = 0;     // of it, for refinements that the plan did not expect [s]
   bool actuated = true;      // false: the state under voltage is not wanted
 };
 

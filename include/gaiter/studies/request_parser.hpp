@@ -47,7 +47,9 @@ class Parser {
   void read_segments();
   void read_settings();
   void read_outputs(const Given& given);
+  std::size_t segment_of_output(const Given& given, std::string_view name) const;
   void read_output_variables(const Given& given);
+  void choose_columns();
   void read_axis(const Given& given);
   std::optional<Match> match(std::string_view lower_name, const Given& given) const;
   Match match_swept(std::string_view lower_name, const Given& given) const;

@@ -16,7 +16,8 @@ namespace gaiter::studies {
 struct Request {
   model::Scene scene;                         // of a sweep: its first design
   std::string output;                         // file name of the archive
-  std::vector<std::string> output_variables;  // of the results, in the schema's order; empty: all
+  std::vector<std::string> output_variables;  // of the results as given, in the schema's order; empty: all
+  std::vector<std::string> columns;  // results that the archive keeps, for archive::Layout; empty: all
   std::string axisym_view;  // file name from which those of the finite element fields are made; empty: none
   std::vector<std::string> outputs;  // as given, for -fidelity auto; empty: its default
   bool dry_run = false;
