@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "gaiter/petsc/session.hpp"
+#include "gaiter/physics/model_error.hpp"
 #include "gaiter/physics/segment_summary.hpp"
 #include "gaiter/physics/slice_kernel.hpp"
 #include "gaiter/physics/wall_resolution.hpp"
@@ -263,6 +264,10 @@ void SliceModel::summarise(model::Fidelity fidelity) {
   for (const Block& block : blocks_) {
     const auto slices = std::span(outcomes_).subspan(block.first_pack, block.heights.size());
     const physics::SegmentSummary summary(slices, block.weights, block.segments);
+    physics::SlicesFound found;
+    Pack beyond;
+    summary.find(found);
+    physics::bound_slice_pressures(block.segments, system_.shape().material, found, beyond);
     for (std::size_t i = 0; i < block.tasks.size(); ++i) {
       const std::size_t task = block.tasks[i];
       const physics::SegmentNumbers& numbers = numbers_[task];
@@ -276,7 +281,7 @@ void SliceModel::summarise(model::Fidelity fidelity) {
       result.voltage_stable =
           result.status < Status::pulled_in ? numbers.voltage : std::numeric_limits<double>::quiet_NaN();
       if (!model::trustworthy(result.status)) continue;
-      result.model_error = model_error(task, result);
+      result.model_error = model_error(task, result, beyond[static_cast<int>(i)]);
       model::derive_error(result);
     }
   }

@@ -88,7 +88,7 @@ class SliceModel {
   void small_drops();
   void small_drops(const physics::Quadrature& gauss, std::span<const std::size_t> slices);
   void summarise(model::Fidelity fidelity);
-  double model_error(std::size_t task, const model::SegmentResult& result) const;
+  double model_error(std::size_t task, const model::SegmentResult& result, double beyond) const;
   void height_errors(const Block& block);
   void errors_of_start(bool rigid);
   void errors_of_start(std::span<const std::size_t> tasks, bool rigid);
