@@ -110,7 +110,8 @@ class SliceModel {
   // Of the batch at hand.
   std::span<const SegmentTask> tasks_;
   std::vector<physics::SegmentNumbers> numbers_;     // of each task
-  std::vector<physics::SegmentForecast> forecasts_;  // likewise, unless they have plans
+  bool planned_ = false;                             // some task has a plan; then all have
+  std::vector<physics::SegmentForecast> forecasts_;  // of each task, where they are needed
   std::vector<Block> blocks_;
   bool energised_ = false;  // somewhere, on any rank
   bool newton_ = true;      // all ranks agree, those without tasks too
