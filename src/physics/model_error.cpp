@@ -1,237 +1,14 @@
 // SPDX-License-Identifier: BSD-2-Clause
 #include "gaiter/physics/model_error.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include "gaiter/physics/leg_law.hpp"
-#include "gaiter/physics/slice_system.hpp"
 
 namespace gaiter::physics {
 
 namespace {
 
-constexpr double vacuum_permittivity = 8.8541878128e-12;  // [F/m]
 constexpr double unknown = std::numeric_limits<double>::infinity();
-// Of the box that the bounds are fitted in.
-constexpr double steepest = 0.364;  // slope: 20 degrees
-constexpr double widest = 1.2;      // difference of the radii at both ends, over their mean
-constexpr double narrowest = 1.03;  // stretch of the bandage at the narrow end of a leg that has given way
-constexpr double softest = 0.7;     // pressure over the shear modulus of the leg
-// K, beyond which the tube is close to buckling; under voltage, which takes its tension away, the less.
-constexpr double softest_at_rest = 6, softest_energised = 4;
-// K m H/R, beyond which there is often no stable state without friction.
-constexpr double largest_slide = 0.8;
-
-// The leg at its mean radius under a pressure P: its strain eps, and derivatives with respect to ln P.
-struct LegAnswer {
-  double strain = 0;
-  double softness = 0;        // -d ln(1 - eps)
-  double softness_slope = 0;  // d softness
-  double volume_slope = 0;    // d ln v, v = eps (2 - eps) the part of the volume that is lost
-  double volume_bend = 0;     // d volume_slope
-};
-
-LegAnswer leg_answer(const model::Leg& leg, const model::Segment& segment, double pressure, double lost) {
-  LegAnswer answer;
-  if (leg.model == model::LegModel::rigid) return answer;
-  const LegConstants constants = leg_constants(leg, segment);
-  const double p = pressure / constants.pressure_scale;
-  double strain = 0, first = 0, second = 0;  // derivatives with respect to p, times p and p^2
-  if (leg.material == model::LegMaterial::neo_hookean) {
-    const double bulk = constants.value[0], shear = constants.value[1], y = 1 - lost;
-    strain = 1 - std::sqrt(y);
-    const double power = shear * std::pow(y, -5.0 / 3);
-    const double p_y = -bulk - power - 5.0 / 3 * lost * power / y;
-    const double p_yy = 10.0 / 3 * power / y + 40.0 / 9 * lost * power / (y * y);
-    const double slope = -2 * (1 - strain) * p_y, bend = 4 * y * p_yy + 2 * p_y;
-    first = p / slope;
-    second = -p * p * bend / (slope * slope * slope);
-  } else {
-    const auto [a, c, none, decay] = constants.value;
-    const double grown = a * std::expm1(p), decayed = c * std::expm1(decay * p);
-    strain = none + grown + decayed;
-    first = p * (grown + a + decay * (decayed + c));
-    second = p * p * (grown + a + decay * decay * (decayed + c));
-  }
-  const double rest = 1 - strain, volume = strain * (2 - strain);
-  answer.strain = strain;
-  answer.softness = first / rest;
-  answer.softness_slope = answer.softness + second / rest + answer.softness * answer.softness;
-  answer.volume_slope = 2 * rest * first / volume;
-  answer.volume_bend = answer.volume_slope + 2 * (rest * second - first * first) / volume -
-                       answer.volume_slope * answer.volume_slope;
-  return answer;
-}
-
-// Derivatives of the tube's energy per volume W, a membrane's, with respect to the logarithms x of the
-// stretch around it and y of that along it, at y = 0.
-struct TubeEnergy {
-  double x = 0, y = 0, xx = 0, xy = 0, yy = 0, xxx = 0, xxy = 0, xyy = 0;
-};
-
-// `log_stretch`: x at the middle of the wall; `field`: of a layer before it is stretched [V/m].
-TubeEnergy tube_energy(const model::Bandage& bandage, double log_stretch, double field) {
-  TubeEnergy w;
-  for (const model::OgdenTerm& term : bandage.ogden) {
-    const double around = term.mu * std::exp(term.alpha * log_stretch), along = term.mu,
-                 across = term.mu * (term.mu / around), a = term.alpha;
-    w.x += around - across;
-    w.y += along - across;
-    w.xx += a * (around + across);
-    w.xy += a * across;
-    w.yy += a * (along + across);
-    w.xxx += a * a * (around - across);
-    w.xxy -= a * a * across;
-    w.xyy -= a * a * across;
-  }
-  if (field == 0) return w;
-  // Less the electric energy, eps E^2 e^{2 (x + y)}/2.
-  const double stress =
-      vacuum_permittivity * bandage.permittivity * field * field * std::exp(2 * log_stretch);
-  w.x -= stress;
-  w.y -= stress;
-  w.xx -= 2 * stress;
-  w.xy -= 2 * stress;
-  w.yy -= 2 * stress;
-  w.xxx -= 4 * stress;
-  w.xxy -= 4 * stress;
-  w.xyy -= 4 * stress;
-  return w;
-}
-
-// What the shifts and their bounds are made of, in one state.
-struct State {
-  ModelShift pressure, volume;
-  double k = 0;             // K
-  double slide = 0;         // K m H/R: how much the axial stretch differs between the ends
-  double strain = 0;        // of the leg
-  double leg_share = 0;     // part of a change of pressure that the leg's giving way takes off
-  double slope_square = 0;  // m^2
-  double reach_square = 0;  // (m H/R)^2
-  double narrow = 1;        // stretch of the bandage at the narrow end
-  bool axially_stable = true;
-};
-
-State state_of(const model::Scene& scene, std::size_t index, double pressure, double lost, double voltage) {
-  const model::Segment& segment = scene.leg.segments[index];
-  const double radius = segment.mean_radius();
-  const double slope = (segment.upper_radius - segment.lower_radius) / segment.height;
-  const Wall wall = reference_wall(scene.bandage, scene.bandage.modules[index], radius, radius);
-  const LegAnswer leg = leg_answer(scene.leg, segment, pressure, lost);
-
-  const double inner = radius * (1 - leg.strain), before = wall.inner_radius + 0.5 * wall.thickness;
-  const double stretch =
-      std::sqrt(1 + (inner - wall.inner_radius) * (inner + wall.inner_radius) / (before * before));
-  const TubeEnergy w =
-      tube_energy(scene.bandage, std::log(stretch), voltage * scene.bandage.layers / scene.bandage.thickness);
-
-  // ln P = ln W_x - 2 x - y, and with x = ln R + ln(1 - eps(P)) its derivatives with respect to ln R (r) and
-  // y.
-  const double share = w.xx / w.x, turn = w.xy / w.x, tension = w.y / w.x;
-  const double f_x = share - 2, f_y = turn - 1, f_xx = w.xxx / w.x - share * share,
-               f_xy = w.xxy / w.x - share * turn, f_yy = w.xyy / w.x - turn * turn;
-  const double soft = leg.softness, given = 1 / (1 + soft * f_x);
-  const double p_r = f_x * given, p_y = f_y * given, x_y = -soft * p_y;
-  const double p_ry = given * (f_xy * given - p_y * (leg.softness_slope * p_r * f_x + soft * f_xx * given));
-  const double p_yy =
-      given * (f_yy + f_xy * x_y - p_y * (leg.softness_slope * p_y * f_x + soft * (f_xx * x_y + f_xy)));
-
-  // Axial stiffness of the tube on its leg, over W_x, and K.
-  const double coupling = 1 - turn;
-  const double stiffness =
-      w.yy / w.x - tension - (soft > 0 ? coupling * coupling * soft / (soft * (share - 2) + 1) : 0);
-  const double k = -coupling * given / stiffness;
-
-  constexpr double second_order = 0.35;  // the parabola overestimates long slides; fitted
-  const double reach = slope * segment.height / radius;
-  State state;
-  state.k = k;
-  state.slide = k * reach;
-  const double scale = reach * reach / 12 / (1 + second_order * std::fabs(state.slide));
-  const auto sliding = [&](double q_r, double q_y, double q_ry, double q_yy) {
-    return scale * k * (0.5 * k * (q_y + q_yy + q_y * q_y) - (q_ry + q_r * q_y));
-  };
-  const double square = slope * slope;
-  state.pressure = {sliding(p_r, p_y, p_ry, p_yy), 0.5 * square * turn * given, -square * tension * given};
-  const double g = leg.volume_slope, bend = leg.volume_bend;
-  const double v_r = 2 + g * p_r;
-  state.volume = {sliding(v_r, g * p_y, g * p_ry + bend * p_r * p_y, g * p_yy + bend * p_y * p_y),
-                  g * state.pressure.slope, square * tension * given * (g * (v_r - 1 - p_r) + bend * p_r)};
-  state.strain = leg.strain;
-  state.leg_share = 1 - given;
-  state.slope_square = square;
-  state.reach_square = reach * reach;
-  state.narrow = stretch * (1 - 0.5 * std::fabs(reach));
-  state.axially_stable = stiffness > 0 && given > 0;
-  return state;
-}
-
-// Of the leg's shear modulus: the pressure at rest over it, and it over the leg's stiffness against a small
-// uniform pressure.
-struct LegShear {
-  double load = 0, part = 0;
-};
-
-LegShear leg_shear(const model::Leg& leg, const model::Segment& segment, double pressure) {
-  const LegConstants constants = leg_constants(leg, segment);
-  const bool law = leg.material == model::LegMaterial::compliance;
-  const double modulus = law ? leg.shear_modulus : 3 * constants.value[1] * constants.pressure_scale;
-  const double softness = law ? constants.value[0] + constants.value[1] * constants.value[3] : 0.5;
-  return {pressure / modulus, modulus * softness / constants.pressure_scale};
-}
-
-// Whether the segment lies in the box that the bounds are fitted in.
-bool in_box(const model::Scene& scene, std::size_t index) {
-  const model::Segment& segment = scene.leg.segments[index];
-  const double radius = segment.mean_radius(), rise = std::fabs(segment.upper_radius - segment.lower_radius);
-  const Wall wall = reference_wall(scene.bandage, scene.bandage.modules[index], radius, radius);
-  const auto within = [](double value, double low, double high) {
-    return value >= low * (1 - 1e-9) && value <= high * (1 + 1e-9);
-  };
-  bool terms = true;
-  for (const model::OgdenTerm& term : scene.bandage.ogden)
-    terms = terms && term.mu * term.alpha > 0 && within(term.alpha, -2, 12.2);
-  return terms && rise <= steepest * segment.height && rise <= widest * radius &&
-         within(segment.height / radius, 0.3, 5) && within(wall.thickness / radius, 0.0025, 0.05) &&
-         within(radius / (wall.inner_radius + wall.thickness), 1.06, 2.2);
-}
-
-bool in_box(const State& state, double softest_tube) {
-  return state.axially_stable && std::fabs(state.k) <= softest_tube &&
-         std::fabs(state.slide) <= largest_slide && state.strain <= 0.3 && state.narrow >= narrowest;
-}
-
-// Both states of a segment, which of them are inside of the box, and what the leg's shear has to say.
-struct States {
-  State rest, actuated;
-  bool rest_known = false, actuated_known = false;
-  LegShear shear;
-};
-
-States states_of(const model::Scene& scene, std::size_t segment, const model::SegmentResult& slices) {
-  States states;
-  const bool in_contact =
-      slices.status == model::Status::contact || slices.status == model::Status::extrapolated;
-  if (!in_contact || !(slices.pressure_rest > 0) || !(slices.pressure_actuated > 0)) return states;
-  const double voltage = scene.bandage.modules[segment].voltage;
-  states.rest =
-      state_of(scene, segment, slices.pressure_rest, 1 - slices.volume_rest / slices.volume_initial, 0);
-  states.actuated = voltage == 0
-                        ? states.rest
-                        : state_of(scene, segment, slices.pressure_actuated, slices.volume_change, voltage);
-  bool known = in_box(scene, segment);
-  if (scene.leg.model == model::LegModel::compliant) {
-    states.shear = leg_shear(scene.leg, scene.leg.segments[segment], slices.pressure_rest);
-    known = known && states.shear.load <= softest && states.shear.part >= 0.04 && states.shear.part <= 1;
-  }
-  states.rest_known = known && in_box(states.rest, softest_at_rest);
-  states.actuated_known = states.rest_known && (voltage == 0 || in_box(states.actuated, softest_energised));
-  if (scene.contact_axial == model::ContactAxial::held)
-    for (State* state : {&states.rest, &states.actuated}) state->pressure.sliding = state->volume.sliding = 0;
-  return states;
-}
 
 // What is added to the size of the shifts that a model lacks, so that the sum exceeds its difference to the
 // finite elements in 99 of 100 cases: parts of the shifts and of what they leave out. Fitted by quantile
@@ -243,10 +20,12 @@ struct Bound {
   double share;                 // of slope_square times (leg_share + shear modulus over stiffness of the leg)
   double shear;                 // of reach_square times pressure over shear modulus
 
-  double operator()(const ModelShift& shift, const State& state, const LegShear& leg) const {
+  // What the leg's shear has to say: see States.
+  double operator()(const ModelShift& shift, double leg_share, double slope_square, double reach_square,
+                    double load, double part) const {
     return floor + sliding * std::fabs(shift.sliding) + slope * std::fabs(shift.slope) +
-           ends * std::fabs(shift.ends) + stiff_slope * std::fabs(shift.slope) * state.leg_share +
-           share * state.slope_square * (state.leg_share + leg.part) + shear * state.reach_square * leg.load;
+           ends * std::fabs(shift.ends) + stiff_slope * std::fabs(shift.slope) * leg_share +
+           share * slope_square * (leg_share + part) + shear * reach_square * load;
   }
 };
 
@@ -265,40 +44,94 @@ constexpr Bounds sliding_bounds{
     .drop = {1e-3, 0.25, 0.3, 0.1, 3.9, 0, 0.5},
 };
 
+// Of one segment; without contact all are 0.
+States<double> states_of(const model::Scene& scene, std::size_t segment, const model::SegmentResult& slices) {
+  States<double> one{};
+  const bool in_contact =
+      slices.status == model::Status::contact || slices.status == model::Status::extrapolated;
+  if (!in_contact || !(slices.pressure_rest > 0) || !(slices.pressure_actuated > 0)) return one;
+  static const Quadrature none;
+  SegmentPack segments;
+  segments.set(0, segment_numbers(scene, segment), scene.bandage, none);
+  SlicesFound found;
+  found.in_contact[0] = 1;
+  found.pressure_rest[0] = slices.pressure_rest;
+  found.pressure_actuated[0] = slices.pressure_actuated;
+  found.lost_at_rest[0] = 1 - slices.volume_rest / slices.volume_initial;
+  found.lost_actuated[0] = slices.volume_change;
+  States<Pack> states;
+  find_model_states(segments, scene.leg.material, found, {0, 1}, states);
+  const Pack* from = reinterpret_cast<const Pack*>(&states);
+  double* to = reinterpret_cast<double*>(&one);
+  for (std::size_t row = 0; row < sizeof one / sizeof *to; ++row) to[row] = from[row][0];
+  return one;
+}
+
+ModelShift pressure_shift(const State<double>& state) {
+  return {state.pressure_sliding, state.pressure_slope, state.pressure_ends};
+}
+
+ModelShift volume_shift(const State<double>& state) {
+  return {state.volume_sliding, state.volume_slope, state.volume_ends};
+}
+
+GAITER_MULTIVERSION
+void bound_pressure(const State<Pack>& state, const Pack& known, const States<Pack>& states, Pack& error) {
+  for (int i = 0; i < pack_width; ++i) {
+    const ModelShift shift{state.pressure_sliding[i], state.pressure_slope[i], state.pressure_ends[i]};
+    const double bound =
+        std::fabs(shift.all()) + slice_bounds.pressure(shift, state.leg_share[i], state.slope_square[i],
+                                                       state.reach_square[i], states.shear_load[i],
+                                                       states.shear_part[i]);
+    const double here = known[i] > 0 ? bound : unknown;
+    error[i] = error[i] < here ? here : error[i];
+  }
+}
+
 }  // namespace
 
+void bound_slice_pressures(const SegmentPack& segments, model::LegMaterial material,
+                           const SlicesFound& slices, Pack& error) {
+  States<Pack> states;
+  find_model_states(segments, material, slices, {}, states);
+  for (int i = 0; i < pack_width; ++i) error[i] = 0;
+  bound_pressure(states.rest, states.rest_known, states, error);
+  bound_pressure(states.actuated, states.actuated_known, states, error);
+}
+
 ModelShifts model_shifts(const model::Scene& scene, std::size_t segment, const model::SegmentResult& slices) {
-  const States states = states_of(scene, segment, slices);
-  return {states.rest.pressure,   states.actuated.pressure, states.rest.volume,
-          states.actuated.volume, states.rest_known,        states.actuated_known};
+  const States<double> states = states_of(scene, segment, slices);
+  return {pressure_shift(states.rest),   pressure_shift(states.actuated), volume_shift(states.rest),
+          volume_shift(states.actuated), states.rest_known > 0,           states.actuated_known > 0};
 }
 
 ModelErrors model_errors(const model::Scene& scene, std::size_t segment, const model::SegmentResult& slices) {
-  const States states = states_of(scene, segment, slices);
-  const State &rest = states.rest, &actuated = states.actuated;
+  const States<double> states = states_of(scene, segment, slices);
+  const State<double>&rest = states.rest, &actuated = states.actuated;
+  const ModelShift at_rest = pressure_shift(rest), under_voltage = pressure_shift(actuated);
   // The drop is the difference of two pressures whose shifts are much the same.
   const double drop = slices.pressure_rest - slices.pressure_actuated;
   const auto drop_part = [&](double ModelShift::*part) {
-    return (slices.pressure_rest * rest.pressure.*part - slices.pressure_actuated * actuated.pressure.*part) /
-           drop;
+    return (slices.pressure_rest * at_rest.*part - slices.pressure_actuated * under_voltage.*part) / drop;
   };
   ModelShift dropped;
   if (drop > 0)
     dropped = {drop_part(&ModelShift::sliding), drop_part(&ModelShift::slope), drop_part(&ModelShift::ends)};
   const auto errors = [&](const Bounds& bounds, auto&& lacking) {
-    const auto bounded = [&](const Bound& bound, const ModelShift& shift, const State& state) {
-      return std::fabs(lacking(shift)) + bound(shift, state, states.shear);
+    const auto bounded = [&](const Bound& bound, const ModelShift& shift, const State<double>& state) {
+      return std::fabs(lacking(shift)) + bound(shift, state.leg_share, state.slope_square, state.reach_square,
+                                               states.shear_load, states.shear_part);
     };
     ModelError error{unknown, unknown, unknown, unknown};
     // Without voltage, and on a leg that does not give way, all models agree on nothing.
     if (scene.bandage.modules[segment].voltage == 0) error.actuation_drop = 0;
     if (scene.leg.model == model::LegModel::rigid) error.volume_change = 0;
-    if (states.rest_known) error.pressure_rest = bounded(bounds.pressure, rest.pressure, rest);
-    if (!states.actuated_known) return error;
-    error.pressure_actuated = bounded(bounds.pressure, actuated.pressure, actuated);
+    if (states.rest_known > 0) error.pressure_rest = bounded(bounds.pressure, at_rest, rest);
+    if (!(states.actuated_known > 0)) return error;
+    error.pressure_actuated = bounded(bounds.pressure, under_voltage, actuated);
     if (scene.bandage.modules[segment].voltage != 0 && drop > 0)
       error.actuation_drop = bounded(bounds.drop, dropped, actuated);
-    if (actuated.strain > 0) error.volume_change = bounded(bounds.volume, actuated.volume, actuated);
+    if (actuated.strain > 0) error.volume_change = bounded(bounds.volume, volume_shift(actuated), actuated);
     return error;
   };
   return {errors(slice_bounds, [](const ModelShift& shift) { return shift.all(); }),

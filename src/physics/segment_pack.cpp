@@ -42,6 +42,11 @@ SegmentNumbers segment_numbers(const model::Scene& scene, std::size_t segment) {
                            : std::numeric_limits<double>::infinity();
   numbers.pressure_scale = law.pressure_scale;
   std::copy(law.value.begin(), law.value.end(), numbers.leg_law);
+  numbers.gives_way = scene.leg.model == model::LegModel::rigid ? 0 : 1;
+  numbers.shear_modulus = scene.leg.material == model::LegMaterial::compliance
+                              ? scene.leg.shear_modulus
+                              : 3 * law.value[1] * law.pressure_scale;
+  numbers.slides = scene.contact_axial == model::ContactAxial::free ? 1 : 0;
   numbers.reference_radius = module.length > 0 ? module.length / (2 * M_PI) : mean_radius / module.stretch;
   numbers.inner_radius = wall.inner_radius;
   numbers.thickness = wall.thickness;

@@ -63,6 +63,19 @@ void SegmentSummary::finish(const SegmentPack& segments) {
   }
 }
 
+GAITER_MULTIVERSION
+void SegmentSummary::find(SlicesFound& found) const {
+  constexpr double contact = static_cast<double>(model::Status::contact),
+                   extrapolated = static_cast<double>(model::Status::extrapolated);
+  GAITER_EACH {
+    found.in_contact[i] = status_[i] == contact || status_[i] == extrapolated ? 1 : 0;
+    found.pressure_rest[i] = rest_[i];
+    found.pressure_actuated[i] = actuated_[i];
+    found.lost_at_rest[i] = 1 - volume_rest_[i] / volume_initial_[i];
+    found.lost_actuated[i] = volume_change_[i];
+  }
+}
+
 model::SegmentResult SegmentSummary::result(int i, double quadrature_error) const {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   const auto status = static_cast<model::Status>(static_cast<int>(status_[i]));

@@ -2,6 +2,7 @@
 #include "gaiter/physics/slice_system.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -176,6 +177,16 @@ void SliceSystem::repeat_last(std::size_t end) {
   Pack* rows = rows_.data() + (end - 1) / pack_width * rows_per_pack_;
   for (std::size_t row = 0; row < rows_per_pack_; ++row)
     for (std::size_t i = last + 1; i < pack_width; ++i) rows[row][i] = rows[row][last];
+}
+
+void SliceSystem::gather(std::span<const std::size_t> slices, Pack* rows) const {
+  std::array<const double*, pack_width> from;
+  for (std::size_t i = 0; i < pack_width; ++i) {
+    const std::size_t slice = slices[std::min(i, slices.size() - 1)];
+    from[i] = &pack(slice / pack_width)[0].value[slice % pack_width];
+  }
+  for (std::size_t row = 0; row < rows_per_pack_; ++row)
+    for (int i = 0; i < pack_width; ++i) rows[row][i] = from[i][row * pack_width];
 }
 
 SliceSystem SliceSystem::replicate(std::size_t index) const {

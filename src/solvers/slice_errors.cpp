@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "gaiter/physics/height_error.hpp"
-#include "gaiter/physics/model_error.hpp"
 #include "gaiter/physics/slice_kernel.hpp"
 #include "gaiter/solvers/slice_model.hpp"
 
@@ -79,11 +78,10 @@ void SliceModel::height_errors(const Block& block) {
     if (!(worst[static_cast<int>(i)] < largest_own_error)) unclear_.push_back(block.tasks[i]);
 }
 
-// What models beyond this one would change in the pressures, as far as it is known.
-double SliceModel::model_error(std::size_t task, const model::SegmentResult& result) const {
+// What models beyond this one would change in the pressures, as far as it is known, from what those beyond
+// slices would.
+double SliceModel::model_error(std::size_t task, const model::SegmentResult& result, double beyond) const {
   const model::Scene& scene = *tasks_[task].scene;
-  const physics::ModelError slices = physics::model_errors(scene, tasks_[task].segment, result).slice;
-  const double beyond = std::max(slices.pressure_rest, slices.pressure_actuated);
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   if (!std::isfinite(beyond)) return none;
   if (result.fidelity == model::Fidelity::slice || scene.leg.model == model::LegModel::rigid) return beyond;

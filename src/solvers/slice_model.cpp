@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "gaiter/petsc/session.hpp"
+#include "gaiter/physics/model_error.hpp"
 #include "gaiter/physics/segment_summary.hpp"
 #include "gaiter/physics/slice_kernel.hpp"
 #include "gaiter/physics/wall_resolution.hpp"
@@ -36,18 +37,16 @@ const physics::Quadrature& SliceModel::wall_rule(int points) {
   return found->second;
 }
 
-// What is known of the errors of tasks that are not planned.
+// What is known of the errors of tasks that are not planned, where more is wanted than slices themselves tell.
 void SliceModel::forecast() {
-  using physics::SegmentForecast;
   forecasts_.clear();
-  bool needed = false;
-  for (const SegmentTask& task : tasks_) {
-    if (task.plan) return;
+  const auto asks = [](const SegmentTask& task) {
     const model::Scene& scene = *task.scene;
-    forecasts_.emplace_back(scene, task.segment);
-    if (scene.fidelity != model::Fidelity::slice || scene.discretisation.wall_points > 0) needed = true;
-  }
-  if (needed) SegmentForecast::analyse(forecasts_);
+    return scene.fidelity != model::Fidelity::slice || scene.discretisation.wall_points > 0;
+  };
+  if (planned_ || std::none_of(tasks_.begin(), tasks_.end(), asks)) return;
+  for (const SegmentTask& task : tasks_) forecasts_.emplace_back(*task.scene, task.segment);
+  physics::SegmentForecast::analyse(forecasts_);
 }
 
 // The tasks' slices, set up in the memory of the batch before.
@@ -72,8 +71,9 @@ void SliceModel::take(std::span<const SegmentTask> tasks) {
   }
   energised_ = !petsc::agree(comm_, !voltage_somewhere);
   newton_ = petsc::agree(comm_, all_newton);
+  planned_ = std::any_of(tasks.begin(), tasks.end(), [](const SegmentTask& task) { return task.plan; });
   forecast();
-  if (forecasts_.size() == tasks.size()) physics::choose_wall_points(numbers_, wall_tolerance);
+  if (!planned_) physics::choose_wall_points(numbers_, wall_tolerance);
   for (std::size_t t = 0; t < tasks.size(); ++t) {
     const int points = tasks[t].scene->discretisation.wall_points;
     if (!tasks[t].plan && points == 0) continue;
@@ -263,6 +263,10 @@ void SliceModel::summarise(model::Fidelity fidelity) {
   for (const Block& block : blocks_) {
     const auto slices = std::span(outcomes_).subspan(block.first_pack, block.heights.size());
     const physics::SegmentSummary summary(slices, block.weights, block.segments);
+    physics::SlicesFound found;
+    Pack beyond;
+    summary.find(found);
+    physics::bound_slice_pressures(block.segments, system_.shape().material, found, beyond);
     for (std::size_t i = 0; i < block.tasks.size(); ++i) {
       const std::size_t task = block.tasks[i];
       const physics::SegmentNumbers& numbers = numbers_[task];
@@ -276,7 +280,7 @@ void SliceModel::summarise(model::Fidelity fidelity) {
       result.voltage_stable =
           result.status < Status::pulled_in ? numbers.voltage : std::numeric_limits<double>::quiet_NaN();
       if (!model::trustworthy(result.status)) continue;
-      result.model_error = model_error(task, result);
+      result.model_error = model_error(task, result, beyond[static_cast<int>(i)]);
       model::derive_error(result);
     }
   }

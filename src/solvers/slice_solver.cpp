@@ -271,10 +271,9 @@ void SliceSolver::gather_open() {
   for (std::size_t k = 0; k < packs; ++k) {
     const std::size_t first = k * pack_width;
     Pack* constants = gathered_.rows.data() + k * rows;
+    system_->gather(std::span(gathered_.from).subspan(first, pack_width), constants);
     for (int i = 0; i < pack_width; ++i) {
       const std::size_t slice = gathered_.from[first + i];
-      const Pack* source = system_->pack(slice / pack_width);
-      for (std::size_t row = 0; row < rows; ++row) constants[row][i] = source[row][slice % pack_width];
       copy_slice((*states_)[slice / pack_width], slice % pack_width, gathered_.states[k], i);
       // The spare places of the last pack repeat its last slice, closed.
       if (first + i >= gathered_.count) gathered_.states[k].open[i] = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-2-Clause
 // The states that the slices of a batch pass through: at rest, under voltage, and what is found in each.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "gaiter/petsc/session.hpp"
@@ -22,10 +23,13 @@ namespace {
 // f' of the scalar equation of a slice: 1 for a bandage that does not stiffen or soften with the leg's
 // radius. Below this there may be a limit point near by, and the equilibrium is searched for along the path.
 constexpr double doubtful_slope = 0.5;
-constexpr double small_actuation =
-    0.1;  // of the pressure at rest: a part of the path that few points resolve
-constexpr double error_of_drop = 1e-12;  // relative, for which its difference of pressures is good enough
-constexpr int points_of_drop = 4;        // of the mean slope on this part
+// A drop is the difference of two pressures unless it is so small a part of these that what Newton's
+// tolerance may leave in them shows, or its error is estimated to be larger.
+constexpr double small_drop = 0.01, error_of_drop = 1e-11;
+constexpr int fewest_points_of_drop = 2;
+// Actuation pressures over that at rest: parts of the path between the two states on which so many points,
+// and one and two more, give the mean slope to 1e-12 even if it changes ten times as fast as the pressure.
+constexpr std::array<double, 3> parts_of_drop{5e-4, 0.01, 0.1};
 
 }  // namespace
 
@@ -131,38 +135,62 @@ void SliceModel::finish_actuated(model::Fidelity fidelity) {
   each_pack([&](const Block& block, std::size_t k) {
     float_free(block, k);
     physics::record_loads(system_.shape(), system_.pack(k), block.segments.constants.voltage, outcomes_[k]);
-    if (fidelity == model::Fidelity::slice) small_drops(k);
   });
+  if (fidelity == model::Fidelity::slice) small_drops();
 }
 
-// A drop that is small beside the pressures, whose difference would have few of its digits: that of the
-// residual at rest between the two states, which is the actuation pressure, over its mean slope.
-void SliceModel::small_drops(std::size_t k) {
-  SliceOutcomes& outcomes = outcomes_[k];
-  int small[pack_width], any = 0;
-  for (int i = 0; i < pack_width; ++i) {
-    small[i] = outcomes.pressure_actuated[i] > 0 &&
-               outcomes.actuation_pressure[i] < small_actuation * outcomes.pressure_rest[i] &&
-               outcomes.error_of_difference[i] > error_of_drop * outcomes.actuation_drop[i];
-    any |= small[i];
-  }
-  if (!any) return;
-  const physics::Quadrature& gauss = wall_rule(points_of_drop);
+// Drops whose difference of pressures would have few of their digits: of the residual at rest between the two
+// states, which is the actuation pressure, over its mean slope. Those that need equally many points for it go
+// into packs of their own.
+void SliceModel::small_drops() {
+  for (auto& slices : small_drops_) slices.clear();
+  each_pack([&](const Block& block, std::size_t k) {
+    const SliceOutcomes& outcomes = outcomes_[k];
+    for (int i = 0; i < block.segments.count; ++i) {
+      const double part = outcomes.actuation_pressure[i] / outcomes.pressure_rest[i];
+      const double drop = outcomes.actuation_drop[i];
+      const bool small = drop < small_drop * outcomes.pressure_rest[i] ||
+                         outcomes.error_of_difference[i] > error_of_drop * drop;
+      const bool resolved = part > 0 && part < parts_of_drop.back();
+      if (!small || !resolved || !(outcomes.pressure_actuated[i] > 0)) continue;
+      const auto range = std::upper_bound(parts_of_drop.begin(), parts_of_drop.end(), part);
+      small_drops_[static_cast<std::size_t>(range - parts_of_drop.begin())].push_back(k * pack_width + i);
+    }
+  });
   system_.energise(false);
-  Pack mean_slope{};
+  for (std::size_t range = 0; range < small_drops_.size(); ++range) {
+    const physics::Quadrature& gauss = wall_rule(fewest_points_of_drop + static_cast<int>(range));
+    for (std::size_t first = 0; first < small_drops_[range].size(); first += pack_width) {
+      const std::span slices = std::span(small_drops_[range]).subspan(first);
+      small_drops(gauss, slices.first(std::min<std::size_t>(pack_width, slices.size())));
+    }
+  }
+  system_.energise(true);
+}
+
+void SliceModel::small_drops(const physics::Quadrature& gauss, std::span<const std::size_t> slices) {
+  gathered_.resize(system_.rows_per_pack());
+  system_.gather(slices, gathered_.data());
+  Pack at_rest, actuated, mean_slope{};
+  for (int i = 0; i < pack_width; ++i) {
+    const std::size_t slice = slices[std::min<std::size_t>(i, slices.size() - 1)];
+    at_rest[i] = rest_pressure_[slice / pack_width][slice % pack_width];
+    actuated[i] = states_[slice / pack_width].pressure[slice % pack_width];
+  }
   for (std::size_t point = 0; point < gauss.nodes.size(); ++point) {
     const double share = gauss.nodes[point];
     Pack pressure, strain, strain_slope, bandage, bandage_slope;
-    for (int i = 0; i < pack_width; ++i)
-      pressure[i] = share * rest_pressure_[k][i] + (1 - share) * states_[k].pressure[i];
-    physics::leg_strain(system_.shape(), system_.pack(k), pressure, strain, strain_slope);
-    physics::bandage_pressure(system_.shape(), system_.pack(k), strain, bandage, bandage_slope);
+    for (int i = 0; i < pack_width; ++i) pressure[i] = share * at_rest[i] + (1 - share) * actuated[i];
+    physics::leg_strain(system_.shape(), gathered_.data(), pressure, strain, strain_slope);
+    physics::bandage_pressure(system_.shape(), gathered_.data(), strain, bandage, bandage_slope);
     for (int i = 0; i < pack_width; ++i)
       mean_slope[i] += gauss.weights[point] * (1 - bandage_slope[i] * strain_slope[i]);
   }
-  system_.energise(true);
-  for (int i = 0; i < pack_width; ++i)
-    if (small[i]) outcomes.actuation_drop[i] = outcomes.actuation_pressure[i] / mean_slope[i];
+  for (std::size_t i = 0; i < slices.size(); ++i) {
+    SliceOutcomes& outcomes = outcomes_[slices[i] / pack_width];
+    const std::size_t place = slices[i] % pack_width;
+    outcomes.actuation_drop[place] = outcomes.actuation_pressure[place] / mean_slope[static_cast<int>(i)];
+  }
 }
 
 }  // namespace gaiter::solvers

@@ -2,9 +2,10 @@
 #pragma once
 
 #include "gaiter/model/result.hpp"
+#include "gaiter/physics/model_error_kernel.hpp"
 
 // How far slices and sliding slices are from the axisymmetric finite elements, estimated from the slices'
-// result alone in 0.1 to 0.4 microseconds: to leading order in the slope m of the leg, in closed form.
+// result alone in less than a microsecond: to leading order in the slope m of the leg, in closed form.
 //
 // Three effects, all of the order m^2, change the mean pressure of a segment of height H, radius R and slope
 // m; tau is the tension along the tube over that around it, K the change of the tube's axial stretch per
@@ -58,5 +59,9 @@ struct ModelErrors {
 // below 0.8: beyond, the frictionless tube has often buckled, or has no stable state.
 ModelShifts model_shifts(const model::Scene& scene, std::size_t segment, const model::SegmentResult& slices);
 ModelErrors model_errors(const model::Scene& scene, std::size_t segment, const model::SegmentResult& slices);
+
+// Of a pack of segments: the larger error of both pressures of plain slices, by the same formulae.
+void bound_slice_pressures(const SegmentPack& segments, model::LegMaterial material,
+                           const SlicesFound& slices, Pack& error);
 
 }  // namespace gaiter::physics

@@ -17,11 +17,13 @@ struct SegmentConstants {
   Number height, lower_radius, upper_radius;  // of the leg, undeformed [m]
   Number data_limit;                          // pressure up to which the leg's law was measured [Pa]
   Number pressure_scale, leg_law[4];          // LegConstants
+  Number gives_way, shear_modulus;            // of the leg: 1, or 0 if it is rigid; [Pa]
   Number reference_radius;                    // of the bandage: flat length / (2 pi) [m]
   Number inner_radius, thickness;             // of its reference wall [m]
   Number gap;                                 // mean leg radius less the inner radius of the wall [m]
   Number steepest;                            // largest |alpha| of the Ogden terms
   Number voltage, permittivity, layers;
+  Number slides;              // 1: free along the leg, 0: held
   Number stiffens;            // 1: without voltage there is one equilibrium, else 0
   Number wall_points;         // Gauss points through the wall; 0: to be chosen
   Number wall_error;          // of the quadrature through the wall, relative

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "gaiter/model/result.hpp"
+#include "gaiter/physics/model_error_kernel.hpp"
 #include "gaiter/physics/segment_pack.hpp"
 #include "gaiter/physics/slice_outcome.hpp"
 
@@ -20,6 +21,9 @@ class SegmentSummary {
   // trustworthy result, the field also where one is pulled in. `quadrature_error` and the slices' own errors
   // make the discretisation error.
   model::SegmentResult result(int place, double quadrature_error) const;
+
+  // Of all, what tells the error of the model.
+  void find(SlicesFound& found) const;
 
  private:
   void add(const SliceOutcomes& slice, const Pack& weights);

@@ -86,6 +86,9 @@ class SliceSystem {
   // A system of `packs() == 1` whose slices all have the constants of slice `index` of this one.
   SliceSystem replicate(std::size_t index) const;
 
+  // Constants of up to 64 slices of several packs to the rows of one; the spare places repeat the last slice.
+  void gather(std::span<const std::size_t> slices, Pack* rows) const;
+
   std::size_t rows_per_pack() const { return rows_per_pack_; }
   const Pack* pack(std::size_t index) const { return rows_.data() + index * rows_per_pack_; }
   double constant(std::size_t slice, int row) const {

@@ -3,6 +3,7 @@
 
 #include <mpi.h>
 
+#include <array>
 #include <map>
 #include <memory>
 #include <span>
@@ -85,9 +86,10 @@ class SliceModel {
   void record_actuated(const Block& block, std::size_t pack);
   void float_free(const Block& block, std::size_t pack);
   void finish_actuated(model::Fidelity fidelity);
-  void small_drops(std::size_t pack);
+  void small_drops();
+  void small_drops(const physics::Quadrature& gauss, std::span<const std::size_t> slices);
   void summarise(model::Fidelity fidelity);
-  double model_error(std::size_t task, const model::SegmentResult& result) const;
+  double model_error(std::size_t task, const model::SegmentResult& result, double beyond) const;
   void height_errors(const Block& block);
   void errors_of_start(bool rigid);
   void errors_of_start(std::span<const std::size_t> tasks, bool rigid);
@@ -109,7 +111,8 @@ class SliceModel {
   // Of the batch at hand.
   std::span<const SegmentTask> tasks_;
   std::vector<physics::SegmentNumbers> numbers_;     // of each task
-  std::vector<physics::SegmentForecast> forecasts_;  // likewise, unless they have plans
+  bool planned_ = false;                             // some task has a plan; then all have
+  std::vector<physics::SegmentForecast> forecasts_;  // of each task, where they are needed
   std::vector<Block> blocks_;
   bool energised_ = false;  // somewhere, on any rank
   bool newton_ = true;      // all ranks agree, those without tasks too
@@ -117,10 +120,12 @@ class SliceModel {
   std::vector<physics::PackState> states_;
   std::vector<physics::SliceOutcomes> outcomes_;
   std::vector<physics::Pack> rigid_pressure_, rest_pressure_;
-  std::vector<physics::Pack> radii_;  // of the leg at each slice
-  std::vector<double> height_error_;  // of each task
-  std::vector<std::size_t> unclear_;  // tasks whose pressures do not tell that error
-  physics::SliceSystem check_;        // their slices at more heights
+  std::vector<physics::Pack> radii_;                     // of the leg at each slice
+  std::vector<physics::Pack> gathered_;                  // constants of slices from several packs
+  std::array<std::vector<std::size_t>, 3> small_drops_;  // slices, by how many points they need
+  std::vector<double> height_error_;                     // of each task
+  std::vector<std::size_t> unclear_;                     // tasks whose pressures do not tell that error
+  physics::SliceSystem check_;                           // their slices at more heights
   std::vector<model::SegmentResult> results_;
 };
 
