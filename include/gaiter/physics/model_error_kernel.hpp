@@ -25,16 +25,19 @@ struct State {
   Number leg_share;     // part of a change of pressure that the leg's giving way takes off
   Number slope_square;  // m^2
   Number reach_square;  // (m H/R)^2
-  Number narrow;        // stretch of the bandage at the narrow end
+  Number stretch;       // of the bandage, at the mean radius
+  Number narrow;        // and at the narrow end
   Number stable;        // axially: 1, else 0
 };
 
-// Both states of a segment, which of them are inside of the box (1, else 0), and of the leg's shear modulus:
-// the pressure at rest over it, and it over the leg's stiffness against a small uniform pressure.
+// Both states of a segment, which of them are inside of the box and of the wider one (1, else 0), and of the
+// leg's shear modulus: the pressure at rest over it, and it over the leg's stiffness against a small uniform
+// pressure.
 template <typename Number>
 struct States {
   State<Number> rest, actuated;
   Number rest_known, actuated_known;
+  Number rest_bounded, actuated_bounded;
   Number shear_load, shear_part;
 };
 
