@@ -56,6 +56,11 @@ struct ModelErrors {
 // to 12.2, strains of the leg below 0.3, a shear modulus of the leg of 0.04 to 1 of its stiffness against a
 // small uniform pressure and no less than the pressure over 0.7, |K| below 6 (under voltage 4) and |K| m H/R
 // below 0.8: beyond, the frictionless tube has often buckled, or has no stable state.
+//
+// Some way beyond, the pressures' errors alone are known, with more caution: walls of 0.0015 to 0.08 R,
+// stretch of 1.045 to 2.65 and at the narrow end 0.9, |K| below 25 (under voltage 16), |K| m H/R below 2, and
+// the strain of the leg times pressure over shear modulus below 3.2, beyond which half of the legs are
+// crushed without an end; nothing holds the tube.
 ModelShifts model_shifts(const model::Scene& scene, std::size_t segment, const model::SegmentResult& slices);
 ModelErrors model_errors(const model::Scene& scene, std::size_t segment, const model::SegmentResult& slices);
 
