@@ -3,11 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
+#include <utility>
 
 #include "gaiter/physics/model_error.hpp"
 #include "gaiter/physics/segment_forecast.hpp"
 #include "gaiter/solvers/auto_model.hpp"
+#include "gaiter/solvers/residual_estimate.hpp"
 
 namespace gaiter::solvers {
 
@@ -16,8 +19,24 @@ namespace {
 using model::Fidelity;
 using physics::SegmentForecast;
 
-constexpr double shares_model = 0.7;      // of the tolerance that the model's error may take
+constexpr double unknown = std::numeric_limits<double>::infinity();
+constexpr int fewest_wall_points = 3;
+constexpr double shares_model = 0.98;     // of the tolerance that the model's error may take
+constexpr double shares_unknown = 0.7;    // likewise, before it is known
 constexpr double caution_of_sliding = 2;  // where sliding slices are the truth
+constexpr double least_share = 0.03;      // of the tolerance, that is worth finer slices
+constexpr double keeps_clear = 0.8;       // of what is left for these
+// A closed form beyond so many times the accuracy is not that far above the truth.
+constexpr double hopeless = 3;
+// Of the wall over the radius: a thicker one has a stiffness in bending, which keeps it from buckling where
+// the sliding slices, a membrane's, have no stable state any more.
+constexpr double thickest_membrane = 0.05;
+// Of the voltage: finite elements may be stable somewhat beyond the last stable one of sliding slices.
+constexpr double far_below = 0.45;
+// Of the change by Newton's step, which is added to what the residual finds: in 100 of 101 scenes of
+// benchmarks/auto_axisym_study that had covered the true error.
+constexpr double share_of_spread = 0.4;
+constexpr double cost_of_residual = 0.0075;  // [s], of a state
 
 // Of the wanted outputs, against the finest model that the goal allows.
 double of_wanted(const model::Goal& goal, const physics::ModelError& error) {
@@ -29,65 +48,137 @@ double of_wanted(const model::Goal& goal, const physics::ModelError& error) {
   return worst;
 }
 
-// Outside of what physics::model_errors was fitted to, its shifts still tell the size of the pressures'
-// errors: where the finite elements had an answer, they were below 2.5 times the sum of all
-// (benchmarks/auto_axisym_study).
-double of_shifts(const model::Goal& goal, const physics::ModelShifts& shifts,
-                 const model::SegmentResult& result) {
-  constexpr double caution = 3, floor = 5e-4, largest = 0.3,
-                   unknown = std::numeric_limits<double>::infinity();
-  const bool in_contact =
-      result.status == model::Status::contact || result.status == model::Status::extrapolated;
-  if (!in_contact || goal.actuation_drop || goal.volume_change) return unknown;
-  const auto size = [](const physics::ModelShift& shift) {
-    return std::fabs(shift.sliding) + std::fabs(shift.slope) + std::fabs(shift.ends);
+// What slices and sliding slices lack, as far as their closed forms know.
+std::pair<double, double> closed_forms(const model::Scene& scene, std::size_t segment,
+                                       const SlicePlan& slices, const model::SegmentResult& result) {
+  const model::Goal& goal = scene.goal;
+  if (goal.up_to != Fidelity::sliding) {
+    const physics::ModelErrors errors = physics::model_errors(scene, segment, result);
+    return {of_wanted(goal, errors.slice), of_wanted(goal, errors.sliding)};
+  }
+  SegmentForecast forecast(scene, segment);
+  SegmentForecast::analyse({&forecast, 1}, SegmentForecast::Depth::sliding);
+  forecast.want(goal.pressure_rest || goal.actuation_drop, goal.actuated());
+  return {caution_of_sliding * slices.factor * forecast.sliding_error(), 0};
+}
+
+// From the finite elements' residual: largest error of a wanted output, discretisation included, plus how far
+// it is to be trusted; and whether there are stable states on the way to it.
+struct Residual {
+  double error = unknown;
+  bool reliable = false;
+};
+
+Residual by_residual(const model::Scene& scene, std::size_t segment, SlicePlan& plan,
+                     const model::SegmentResult& result, Fidelity fidelity) {
+  model::Scene wanted = scene;
+  if (!plan.actuated)
+    for (model::Module& module : wanted.bandage.modules) module.voltage = 0;
+  const bool energised = wanted.bandage.modules[segment].voltage != 0;
+  plan.cost += cost_of_residual * (energised ? 2 : 1);
+  const ResidualEstimate found = estimate_by_residual({&wanted, segment}, result, fidelity);
+  const model::Goal& goal = scene.goal;
+  Residual residual{0, found.reliable};
+  const auto add = [&](bool asked, double error) {
+    if (asked) residual.error = std::max(residual.error, std::isnan(error) ? unknown : std::fabs(error));
   };
-  const double sum = std::max(size(shifts.pressure_rest), size(shifts.pressure_actuated));
-  return sum < largest ? caution * sum + floor : unknown;
+  add(goal.pressure_rest || !energised, found.pressure_rest);
+  add(goal.pressure_actuated && energised, found.pressure_actuated);
+  add(goal.actuation_drop && energised, found.actuation_drop);
+  add(goal.volume_change, found.volume_change);
+  residual.error = found.reliable ? residual.error + share_of_spread * found.spread : unknown;
+  return residual;
+}
+
+SlicePlan without_resolution(SlicePlan plan) {
+  plan.cuts.clear();
+  plan.height_error = std::numeric_limits<double>::quiet_NaN();
+  return plan;
+}
+
+SlicePlan to_mesh(const model::Scene& scene, std::size_t segment, const SlicePlan& simpler) {
+  SlicePlan plan = without_resolution(simpler);
+  plan.fidelity = Fidelity::axisym;
+  plan.model_error = plan.change_beyond = 0;
+  plan.tolerance = scene.goal.accuracy / simpler.factor;
+  plan.wall_points = 0;
+  plan.slice_count = 0;  // refinements
+  plan.cost += plan_cost(scene, segment, plan);
+  return plan;
+}
+
+// `of_sliding` may be unknown: then that is found out once they are solved.
+SlicePlan to_sliding(const model::Scene& scene, std::size_t segment, const SlicePlan& slices,
+                     double of_sliding) {
+  SlicePlan plan = without_resolution(slices);
+  const double accuracy = scene.goal.accuracy;
+  const bool last = scene.goal.up_to == Fidelity::sliding;
+  plan.confirm = !(of_sliding <= shares_model * accuracy);
+  plan.fidelity = Fidelity::sliding;
+  // A wall so coarsely resolved that it would do for a rough pressure may lose its stability too early.
+  if (plan.confirm) plan.wall_points = std::max(plan.wall_points, fewest_wall_points);
+  const double error = plan.confirm ? shares_unknown * accuracy : of_sliding;
+  plan.model_error = error / slices.factor;
+  plan.change_beyond = last || plan.confirm ? std::numeric_limits<double>::quiet_NaN() : plan.model_error;
+  plan.tolerance = (accuracy - error) / slices.factor;
+  plan.slice_count = plan.confirm || plan.tolerance < 1e-2 ? 24 : 9;
+  plan.cost += plan_cost(scene, segment, plan);
+  return plan;
+}
+
+// Keeps a plan whose result has so much of an error against finer models.
+SlicePlan settled(SlicePlan plan, double error) {
+  plan.confirm = false;
+  plan.model_error = plan.change_beyond = error / plan.factor;
+  return plan;
 }
 
 }  // namespace
 
 SlicePlan climb(const model::Scene& scene, std::size_t segment, const SlicePlan& slices,
                 const model::SegmentResult& result) {
-  const model::Goal& goal = scene.goal;
-  const physics::ModelErrors errors = physics::model_errors(scene, segment, result);
-  const bool sliding_only = goal.up_to == Fidelity::sliding;
-  const bool wrinkles = std::isnan(slices.change_beyond);
-  double of_slices = of_wanted(goal, errors.slice), of_sliding = of_wanted(goal, errors.sliding);
-  if (!std::isfinite(of_slices) && !wrinkles)
-    of_slices = of_sliding = of_shifts(goal, physics::model_shifts(scene, segment, result), result);
-  if (sliding_only) of_sliding = 0;
-  if (sliding_only) {
-    SegmentForecast forecast(scene, segment);
-    SegmentForecast::analyse({&forecast, 1}, SegmentForecast::Depth::sliding);
-    forecast.want(goal.pressure_rest || goal.actuation_drop, goal.actuated());
-    of_slices = caution_of_sliding * slices.factor * forecast.sliding_error();
+  const double accuracy = scene.goal.accuracy;
+  const auto [of_slices, of_sliding] = closed_forms(scene, segment, slices, result);
+  const double resolved = slices.factor * result.discretisation_error;
+  const double own = resolved + slices.factor * slices.model_error;
+  if (own + of_slices <= accuracy) return settled(slices, of_slices + slices.factor * slices.model_error);
+  // Slices would do, but not as few, or not on a leg so simple.
+  const double left = (accuracy - of_slices) / slices.factor;
+  if (left < slices.asked && left > least_share * accuracy / slices.factor) {
+    SlicePlan finer = slices;
+    finer.asked = keeps_clear * left;
+    return finer;
   }
+  if (scene.goal.up_to == Fidelity::sliding || of_sliding <= shares_model * accuracy)
+    return to_sliding(scene, segment, slices, of_sliding);
   SlicePlan plan = slices;
-  const double own = slices.factor * (result.discretisation_error + slices.model_error);
-  if (own + of_slices <= goal.accuracy) {
-    plan.model_error += of_slices / slices.factor;
-    plan.change_beyond = plan.model_error;
-    return plan;
+  if (of_slices == unknown || of_slices < hopeless * accuracy) {
+    const Residual residual = by_residual(scene, segment, plan, result, Fidelity::slice);
+    if (resolved + residual.error <= accuracy) return settled(plan, residual.error);
+    plan.stable_nearby = residual.reliable;
   }
-  plan.cuts.clear();
-  plan.height_error = std::numeric_limits<double>::quiet_NaN();
-  if (of_sliding <= shares_model * goal.accuracy) {
-    plan.fidelity = Fidelity::sliding;
-    plan.model_error = of_sliding / slices.factor;
-    plan.change_beyond = sliding_only ? std::numeric_limits<double>::quiet_NaN() : plan.model_error;
-    plan.tolerance = (goal.accuracy - of_sliding) / slices.factor;
-    plan.slice_count = plan.tolerance < 1e-2 ? 24 : 9;
-  } else {
-    plan.fidelity = Fidelity::axisym;
-    plan.model_error = plan.change_beyond = 0;
-    plan.tolerance = goal.accuracy / slices.factor;
-    plan.wall_points = 0;
-    plan.slice_count = 0;  // refinements
+  if (of_sliding == unknown || of_sliding < hopeless * accuracy)
+    return to_sliding(scene, segment, plan, of_sliding);
+  return to_mesh(scene, segment, plan);
+}
+
+SlicePlan climb_from_sliding(const model::Scene& scene, std::size_t segment, const SlicePlan& sliding,
+                             const model::SegmentResult& result) {
+  if (scene.goal.up_to == Fidelity::sliding) return sliding;
+  if (!model::trustworthy(result.status)) {
+    const double radius = scene.leg.segments[segment].mean_radius();
+    const bool membrane = scene.bandage.thickness <= thickest_membrane * radius;
+    const double voltage = sliding.actuated ? std::fabs(scene.bandage.modules[segment].voltage) : 0;
+    const bool close = std::fabs(result.voltage_stable) > far_below * voltage;  // NaN: not even at rest
+    const bool none = sliding.confirm && !sliding.stable_nearby && membrane && !close;
+    return none ? sliding : to_mesh(scene, segment, sliding);
   }
-  plan.cost += plan_cost(scene, segment, plan);
-  return plan;
+  if (!sliding.confirm) return sliding;
+  SlicePlan plan = sliding;
+  const Residual residual = by_residual(scene, segment, plan, result, Fidelity::sliding);
+  if (plan.factor * result.discretisation_error + residual.error <= scene.goal.accuracy)
+    return settled(plan, residual.error);
+  return to_mesh(scene, segment, plan);
 }
 
 }  // namespace gaiter::solvers

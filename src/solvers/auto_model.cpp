@@ -104,14 +104,20 @@ SlicePlan plan_slices(const model::Scene& scene, std::size_t segment, const Segm
   return plan;
 }
 
-SlicePlan plan_for(const model::Scene& scene, std::size_t segment, SegmentForecast& forecast) {
+SlicePlan plan_for(const model::Scene& scene, std::size_t segment, SegmentForecast& forecast,
+                   double accuracy) {
   const model::Goal& goal = scene.goal;
   forecast.want(goal.pressure_rest || goal.actuation_drop, goal.actuated());
   const double factor = worst_factor(goal, forecast);
-  const double share = goal.up_to == Fidelity::slice ? 1 : share_of_slices;
-  SlicePlan plan = plan_slices(scene, segment, forecast, share * goal.accuracy / factor);
+  SlicePlan plan = plan_slices(scene, segment, forecast, accuracy / factor);
+  plan.asked = accuracy / factor;
   plan.factor = factor;
   return plan;
+}
+
+// Of the accuracy that is asked for, what slices may take.
+double accuracy_of_slices(const model::Goal& goal) {
+  return goal.up_to == Fidelity::slice ? goal.accuracy : share_of_slices * goal.accuracy;
 }
 
 }  // namespace
@@ -119,11 +125,13 @@ SlicePlan plan_for(const model::Scene& scene, std::size_t segment, SegmentForeca
 SlicePlan plan_segment(const model::Scene& scene, std::size_t segment) {
   SegmentForecast forecast(scene, segment);
   forecast.analyse();
-  SlicePlan plan = plan_for(scene, segment, forecast);
+  SlicePlan plan = plan_for(scene, segment, forecast, accuracy_of_slices(scene.goal));
   if (scene.goal.up_to == Fidelity::slice) return plan;
   const SegmentTask task{&scene, segment, &plan};
   const model::SegmentResult result = solve_segments(PETSC_COMM_SELF, {&task, 1})[0];
-  return climb(scene, segment, plan, result);
+  const SlicePlan higher = climb(scene, segment, plan, result);
+  if (higher.asked == plan.asked) return higher;
+  return plan_for(scene, segment, forecast, higher.asked * plan.factor);
 }
 
 void plan_segments(std::span<const SegmentTask> tasks, std::vector<SlicePlan>& plans) {
@@ -133,7 +141,23 @@ void plan_segments(std::span<const SegmentTask> tasks, std::vector<SlicePlan>& p
   SegmentForecast::analyse(forecasts);
   plans.clear();
   for (std::size_t t = 0; t < tasks.size(); ++t)
-    plans.push_back(plan_for(*tasks[t].scene, tasks[t].segment, forecasts[t]));
+    plans.push_back(
+        plan_for(*tasks[t].scene, tasks[t].segment, forecasts[t], accuracy_of_slices(tasks[t].scene->goal)));
+}
+
+// Slices, or something simpler, to what their plans ask for now.
+void AutoModel::plan_again(std::span<const SegmentTask> tasks, const std::vector<std::size_t>& chosen) {
+  thread_local std::vector<SegmentForecast> forecasts;
+  forecasts.clear();
+  for (const std::size_t t : chosen) forecasts.emplace_back(*tasks[t].scene, tasks[t].segment);
+  SegmentForecast::analyse(forecasts);
+  for (std::size_t k = 0; k < chosen.size(); ++k) {
+    const SegmentTask& task = tasks[chosen[k]];
+    SlicePlan& plan = plans_[chosen[k]];
+    const double before = plan.cost + planning_cost;
+    plan = plan_for(*task.scene, task.segment, forecasts[k], plan.asked * plan.factor);
+    plan.cost += before;
+  }
 }
 
 // Whether the result is not good enough and the plan could be made finer, and was.
@@ -192,21 +216,28 @@ std::span<const model::SegmentResult> AutoModel::solve(std::span<const SegmentTa
                                                                            : plans_[t].wall_points}]
           .push_back(t);
     for (const auto& [key, chosen] : groups) solve_group(tasks, chosen);
+    std::vector<std::size_t> finer;
     std::erase_if(open, [&](std::size_t t) {
       SlicePlan& plan = plans_[t];
       if (refine(plan, results_[t])) {
         plan.cost += plan_cost(*tasks[t].scene, tasks[t].segment, plan);
         return false;
       }
-      const Fidelity solved = plan.fidelity, up_to = tasks[t].scene->goal.up_to;
-      if (up_to == Fidelity::slice || solved == Fidelity::sliding || solved == Fidelity::axisym) return true;
+      const Fidelity solved = plan.fidelity;
+      if (tasks[t].scene->goal.up_to == Fidelity::slice || solved == Fidelity::axisym) return true;
+      const bool slid = solved == Fidelity::sliding;
       // Where slices have no answer, finer models may have none either, and cost far more.
-      if (!model::trustworthy(results_[t].status) || !(results_[t].pressure_rest > 0)) return true;
-      plan = climb(*tasks[t].scene, tasks[t].segment, plan, results_[t]);
+      if (!slid && (!model::trustworthy(results_[t].status) || !(results_[t].pressure_rest > 0))) return true;
+      const double asked = plan.asked;
+      plan = slid ? climb_from_sliding(*tasks[t].scene, tasks[t].segment, plan, results_[t])
+                  : climb(*tasks[t].scene, tasks[t].segment, plan, results_[t]);
+      if (plan.asked != asked) finer.push_back(t);
+      if (plan.fidelity != solved || plan.asked != asked) return false;
       results_[t].model_error = plan.change_beyond;
       model::derive_error(results_[t]);
-      return plan.fidelity == solved;
+      return true;
     });
+    plan_again(tasks, finer);
   }
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t t = 0; t < tasks.size(); ++t) {

@@ -42,6 +42,7 @@ class AutoModel {
   }  // of the last tasks, as solved; costs of all attempts
 
  private:
+  void plan_again(std::span<const SegmentTask> tasks, const std::vector<std::size_t>& chosen);
   void solve_group(std::span<const SegmentTask> tasks, const std::vector<std::size_t>& chosen);
   bool refine(SlicePlan& plan, const model::SegmentResult& result) const;
 
