@@ -9,7 +9,6 @@
 #include <petscsys.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <map>
 
