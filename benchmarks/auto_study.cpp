@@ -9,10 +9,10 @@
 #include <petscsys.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <map>
 
+#include "auto_study.hpp"
 #include "gaiter/petsc/check.hpp"
 #include "gaiter/petsc/session.hpp"
 #include "gaiter/physics/segment_forecast.hpp"
@@ -26,19 +26,7 @@ using namespace gaiter;
 using model::Fidelity;
 using solvers::SegmentTask;
 using solvers::SlicePlan;
-
-double error_of(const model::SegmentResult& found, const model::SegmentResult& truth) {
-  const auto relative = [](double a, double b) { return b > 0 ? std::fabs(a / b - 1) : std::fabs(a); };
-  return std::max(relative(found.pressure_rest, truth.pressure_rest),
-                  relative(found.pressure_actuated, truth.pressure_actuated));
-}
-
-double quantile(std::vector<double> values, double part) {
-  if (values.empty()) return 0;
-  std::sort(values.begin(), values.end());
-  return values[std::min(values.size() - 1,
-                         static_cast<std::size_t>(part * static_cast<double>(values.size())))];
-}
+using study::error_of, study::quantile;
 
 std::vector<model::SegmentResult> solve(const std::vector<model::Scene>& scenes,
                                         const std::vector<SlicePlan>& plans, double* seconds = nullptr) {
@@ -133,8 +121,7 @@ int main(int argc, char** argv) {
 
   std::printf("\n%8s %9s %9s %9s %8s %8s %9s %9s   %s\n", "TOL", "share", "worst", "cost 50%", "95 %", "time",
               "plan us", "solve us", "rungs: rigid, first order, slice");
-  constexpr std::array<double, 9> edges{1e-4, 1e-3, 1e-2, 0.03, 0.1, 0.3, 1, 3, 1e300};
-  std::map<double, std::array<int, edges.size()>> histograms;
+  study::ErrorRatios ratios_of_errors(1e-13);
   for (double tolerance : {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) {
     std::vector<model::Scene> asked = scenes;
     std::vector<SegmentTask> tasks;
@@ -185,29 +172,14 @@ int main(int argc, char** argv) {
       worst = std::max(worst, error / tolerance);
       ++chosen[found[i].fidelity];
       if (cheapest > 0) ratios.push_back((model.plans()[i].cost + solvers::planning_cost) / cheapest);
-      const double ratio = error / std::max(estimate, 1e-14);
+      ratios_of_errors.add(tolerance, error, estimate);
       if (tolerance == only && (error > tolerance || ratios.back() > 2.5))
         tell(asked[i], model.plans()[i], best[i], found[i], error, estimate, ratios.back());
-      for (std::size_t k = 0; k < edges.size(); ++k)
-        if (error > 1e-13 && ratio < edges[k]) {
-          ++histograms[tolerance][k];
-          break;
-        }
     }
     std::printf("%8.0e %8.2f%% %9.2g %9.2f %8.2f %8.2f %9.2f %9.2f   %d %d %d\n", tolerance,
                 100.0 * good / all, worst, quantile(ratios, 0.5), quantile(ratios, 0.95), seconds / hindsight,
                 1e6 * planning / static_cast<double>(size), 1e6 * seconds / static_cast<double>(size),
                 chosen[Fidelity::rigid], chosen[Fidelity::first_order], chosen[Fidelity::slice]);
   }
-  std::printf("\ntrue over estimated error, share of scenes [%%], where the true error is above 1e-13\n%8s",
-              "TOL");
-  for (std::size_t k = 0; k + 1 < edges.size(); ++k) std::printf("  <%7.0e", edges[k]);
-  std::printf("    beyond\n");
-  for (auto it = histograms.rbegin(); it != histograms.rend(); ++it) {
-    int all = 0;
-    for (int number : it->second) all += number;
-    std::printf("%8.0e", it->first);
-    for (int number : it->second) std::printf("  %8.2f", 100.0 * number / std::max(all, 1));
-    std::printf("\n");
-  }
+  ratios_of_errors.print();
 }

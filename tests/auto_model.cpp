@@ -4,8 +4,10 @@
 
 #include <cmath>
 
+#include "gaiter/physics/model_error.hpp"
 #include "gaiter/physics/segment_forecast.hpp"
 #include "gaiter/solvers/auto_model.hpp"
+#include "gaiter/solvers/axisym_model.hpp"
 #include "gaiter/solvers/sliding_model.hpp"
 #include "paper_scene.hpp"
 #include "slice_tasks.hpp"
@@ -200,6 +202,59 @@ TEST(Auto, SlidesWhereItMatters) {
   EXPECT_NE(solvers::plan_segment(scene, 0).fidelity, Fidelity::axisym);
   scene.goal.accuracy = 1e-4;
   EXPECT_EQ(solvers::plan_segment(scene, 0).fidelity, Fidelity::axisym);
+}
+
+model::SegmentResult by_auto(model::Scene scene, double accuracy) {
+  scene.goal.accuracy = accuracy;
+  scene.goal.up_to = Fidelity::axisym;
+  const SegmentTask task{&scene, 0};
+  solvers::AutoModel model(PETSC_COMM_SELF);
+  return model.solve({&task, 1})[0];
+}
+
+model::SegmentResult elements_of(const model::Scene& scene) {
+  const SegmentTask task{&scene, 0};
+  return solvers::solve_axisym(PETSC_COMM_SELF, {&task, 1})[0];
+}
+
+// A cone that the bandage leaves at its narrow end: no closed form knows it, but the finite elements'
+// residual does.
+TEST(Auto, AsksTheResidualBeforeItSolvesAMesh) {
+  const model::Scene scene = paper::cone(14, 1.05);
+  const SegmentTask task{&scene, 0};
+  const auto slices = solvers::solve_segments(PETSC_COMM_SELF, {&task, 1})[0];
+  ASSERT_TRUE(std::isinf(physics::model_errors(scene, 0, slices).slice.pressure_rest));
+  const auto found = by_auto(scene, 0.2);
+  EXPECT_EQ(found.fidelity, Fidelity::slice);
+  const double error = error_of(found, elements_of(scene));
+  EXPECT_GT(error, 0.05);
+  EXPECT_GT(found.error_estimate, error);
+  EXPECT_LE(found.error_estimate, 0.2);
+}
+
+// Where slices would do if only their own error were smaller, they are made finer, and nothing else is
+// solved.
+TEST(Auto, TakesFinerSlicesWhereTheseWouldDo) {
+  const model::Scene scene = paper::cone(6, 1.5);
+  const SegmentTask task{&scene, 0};
+  const auto slices = solvers::solve_segments(PETSC_COMM_SELF, {&task, 1})[0];
+  const double of_slices = physics::model_errors(scene, 0, slices).slice.pressure_rest;
+  ASSERT_LT(of_slices, 0.1);
+  const double accuracy = of_slices / 0.95;
+  const auto rough = by_auto(scene, 10 * of_slices), fine = by_auto(scene, accuracy);
+  EXPECT_GT(rough.error_estimate, accuracy);
+  EXPECT_TRUE(fine.fidelity == Fidelity::first_order || fine.fidelity == Fidelity::slice);
+  EXPECT_LE(fine.error_estimate, 1.01 * accuracy);  // rounded up
+  EXPECT_LE(error_of(fine, elements_of(scene)), accuracy);
+}
+
+// Under this voltage the tube folds along the leg: it has no stable state, which no mesh needs to search for.
+TEST(Auto, SaysWithoutAMeshThatThereIsNoStableState) {
+  const model::Scene scene = paper::cone(5, 2.3, 30e3);
+  ASSERT_EQ(elements_of(scene).status, model::Status::no_equilibrium);
+  const auto found = by_auto(scene, 1e-2);
+  EXPECT_EQ(found.status, model::Status::no_equilibrium);
+  EXPECT_EQ(found.fidelity, Fidelity::sliding);
 }
 
 }  // namespace

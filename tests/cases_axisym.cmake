@@ -23,7 +23,7 @@ gaiter_axisym_test(axisym_press_fit LABEL convergence)
 gaiter_axisym_test(axisym_voltage LABEL cross)
 gaiter_axisym_test(axisym_extremes LABEL cross)
 gaiter_axisym_test(axisym_dual LABEL convergence)
-gaiter_axisym_test(model_error LABEL cross)
+gaiter_axisym_test(residual_estimate LABEL cross)
 
 add_executable(axisym_fields axisym_fields.cpp session_main.cpp)
 target_link_libraries(axisym_fields PRIVATE gaiter_solvers GTest::gtest)

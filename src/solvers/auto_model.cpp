@@ -8,8 +8,8 @@
 #include <numeric>
 
 #include "gaiter/physics/height_error.hpp"
-#include "gaiter/physics/model_error.hpp"
 #include "gaiter/physics/segment_forecast.hpp"
+#include "gaiter/solvers/auto_climb.hpp"
 #include "gaiter/solvers/axisym_model.hpp"
 #include "gaiter/solvers/sliding_model.hpp"
 
@@ -25,9 +25,8 @@ constexpr int most_planned_wall_points = 24;
 constexpr double strict_tolerance = 5e-5;  // below which few slices are not trusted to tell their own error
 constexpr int most_sliding_slices = 192;
 constexpr int most_refinements = 3;
-constexpr double shares_model = 0.7;      // of the tolerance that the model's error may take
-constexpr double share_of_slices = 0.3;   // of the goal, for slices that finer models' errors are added to
-constexpr double caution_of_sliding = 2;  // where sliding slices are the truth
+constexpr double shares_model = 0.7;     // of the tolerance that the model's error may take
+constexpr double share_of_slices = 0.3;  // of the goal, for slices that finer models' errors are added to
 
 // Measured on one core of a 2.1 GHz x86-64 server, batches of some hundred segments [s]; of a slice in one
 // state, and of its pressure at one wall point, per Ogden term.
@@ -105,95 +104,34 @@ SlicePlan plan_slices(const model::Scene& scene, std::size_t segment, const Segm
   return plan;
 }
 
-SlicePlan plan_for(const model::Scene& scene, std::size_t segment, SegmentForecast& forecast) {
+SlicePlan plan_for(const model::Scene& scene, std::size_t segment, SegmentForecast& forecast,
+                   double accuracy) {
   const model::Goal goal = scene.goal.of(segment);
   forecast.want(goal.pressure_rest || goal.actuation_drop, goal.actuated());
   const double factor = worst_factor(goal, forecast);
-  const double share = goal.up_to == Fidelity::slice ? 1 : share_of_slices;
-  SlicePlan plan = plan_slices(scene, segment, forecast, share * goal.accuracy / factor);
+  SlicePlan plan = plan_slices(scene, segment, forecast, accuracy / factor);
+  plan.asked = accuracy / factor;
   plan.factor = factor;
   return plan;
 }
 
-// Of the wanted outputs, against the finest model that the goal allows.
-double of_wanted(const model::Goal& goal, const physics::ModelError& error) {
-  double worst = 0;
-  if (goal.pressure_rest) worst = std::max(worst, error.pressure_rest);
-  if (goal.pressure_actuated) worst = std::max(worst, error.pressure_actuated);
-  if (goal.actuation_drop) worst = std::max(worst, error.actuation_drop);
-  if (goal.volume_change) worst = std::max(worst, error.volume_change);
-  return worst;
-}
-
-// Outside of what physics::model_errors was fitted to, its shifts still tell the size of the pressures'
-// errors: where the finite elements had an answer, they were below 2.5 times the sum of all
-// (benchmarks/auto_axisym_study).
-double of_shifts(const model::Goal& goal, const physics::ModelShifts& shifts,
-                 const model::SegmentResult& result) {
-  constexpr double caution = 3, floor = 5e-4, largest = 0.3,
-                   unknown = std::numeric_limits<double>::infinity();
-  const bool in_contact =
-      result.status == model::Status::contact || result.status == model::Status::extrapolated;
-  if (!in_contact || goal.actuation_drop || goal.volume_change) return unknown;
-  const auto size = [](const physics::ModelShift& shift) {
-    return std::fabs(shift.sliding) + std::fabs(shift.slope) + std::fabs(shift.ends);
-  };
-  const double sum = std::max(size(shifts.pressure_rest), size(shifts.pressure_actuated));
-  return sum < largest ? caution * sum + floor : unknown;
+// Of the accuracy that is asked for, what slices may take.
+double accuracy_of_slices(const model::Goal& goal) {
+  return goal.up_to == Fidelity::slice ? goal.accuracy : share_of_slices * goal.accuracy;
 }
 
 }  // namespace
 
-SlicePlan climb(const model::Scene& scene, std::size_t segment, const SlicePlan& slices,
-                const model::SegmentResult& result) {
-  const model::Goal goal = scene.goal.of(segment);
-  const physics::ModelErrors errors = physics::model_errors(scene, segment, result);
-  const bool sliding_only = goal.up_to == Fidelity::sliding;
-  const bool wrinkles = std::isnan(slices.change_beyond);
-  double of_slices = of_wanted(goal, errors.slice), of_sliding = of_wanted(goal, errors.sliding);
-  if (!std::isfinite(of_slices) && !wrinkles)
-    of_slices = of_sliding = of_shifts(goal, physics::model_shifts(scene, segment, result), result);
-  if (sliding_only) of_sliding = 0;
-  if (sliding_only) {
-    SegmentForecast forecast(scene, segment);
-    SegmentForecast::analyse({&forecast, 1}, SegmentForecast::Depth::sliding);
-    forecast.want(goal.pressure_rest || goal.actuation_drop, goal.actuated());
-    of_slices = caution_of_sliding * slices.factor * forecast.sliding_error();
-  }
-  SlicePlan plan = slices;
-  const double own = slices.factor * (result.discretisation_error + slices.model_error);
-  if (own + of_slices <= goal.accuracy) {
-    plan.model_error += of_slices / slices.factor;
-    plan.change_beyond = plan.model_error;
-    return plan;
-  }
-  plan.cuts.clear();
-  plan.height_error = std::numeric_limits<double>::quiet_NaN();
-  if (of_sliding <= shares_model * goal.accuracy) {
-    plan.fidelity = Fidelity::sliding;
-    plan.model_error = of_sliding / slices.factor;
-    plan.change_beyond = sliding_only ? std::numeric_limits<double>::quiet_NaN() : plan.model_error;
-    plan.tolerance = (goal.accuracy - of_sliding) / slices.factor;
-    plan.slice_count = plan.tolerance < 1e-2 ? 24 : 9;
-  } else {
-    plan.fidelity = Fidelity::axisym;
-    plan.model_error = plan.change_beyond = 0;
-    plan.tolerance = goal.accuracy / slices.factor;
-    plan.wall_points = 0;
-    plan.slice_count = 0;  // refinements
-  }
-  plan.cost += plan_cost(scene, segment, plan);
-  return plan;
-}
-
 SlicePlan plan_segment(const model::Scene& scene, std::size_t segment) {
   SegmentForecast forecast(scene, segment);
   forecast.analyse();
-  SlicePlan plan = plan_for(scene, segment, forecast);
+  SlicePlan plan = plan_for(scene, segment, forecast, accuracy_of_slices(scene.goal));
   if (scene.goal.up_to == Fidelity::slice) return plan;
   const SegmentTask task{&scene, segment, &plan};
   const model::SegmentResult result = solve_segments(PETSC_COMM_SELF, {&task, 1})[0];
-  return climb(scene, segment, plan, result);
+  const SlicePlan higher = climb(scene, segment, plan, result);
+  if (higher.asked == plan.asked) return higher;
+  return plan_for(scene, segment, forecast, higher.asked * plan.factor);
 }
 
 void plan_segments(std::span<const SegmentTask> tasks, std::vector<SlicePlan>& plans) {
@@ -203,7 +141,23 @@ void plan_segments(std::span<const SegmentTask> tasks, std::vector<SlicePlan>& p
   SegmentForecast::analyse(forecasts);
   plans.clear();
   for (std::size_t t = 0; t < tasks.size(); ++t)
-    plans.push_back(plan_for(*tasks[t].scene, tasks[t].segment, forecasts[t]));
+    plans.push_back(
+        plan_for(*tasks[t].scene, tasks[t].segment, forecasts[t], accuracy_of_slices(tasks[t].scene->goal)));
+}
+
+// Slices, or something simpler, to what their plans ask for now.
+void AutoModel::plan_again(std::span<const SegmentTask> tasks, const std::vector<std::size_t>& chosen) {
+  thread_local std::vector<SegmentForecast> forecasts;
+  forecasts.clear();
+  for (const std::size_t t : chosen) forecasts.emplace_back(*tasks[t].scene, tasks[t].segment);
+  SegmentForecast::analyse(forecasts);
+  for (std::size_t k = 0; k < chosen.size(); ++k) {
+    const SegmentTask& task = tasks[chosen[k]];
+    SlicePlan& plan = plans_[chosen[k]];
+    const double before = plan.cost + planning_cost;
+    plan = plan_for(*task.scene, task.segment, forecasts[k], plan.asked * plan.factor);
+    plan.cost += before;
+  }
 }
 
 // Whether the result is not good enough and the plan could be made finer, and was.
@@ -262,6 +216,7 @@ std::span<const model::SegmentResult> AutoModel::solve(std::span<const SegmentTa
                                                                            : plans_[t].wall_points}]
           .push_back(t);
     for (const auto& [key, chosen] : groups) solve_group(tasks, chosen);
+    std::vector<std::size_t> finer;
     std::erase_if(open, [&](std::size_t t) {
       SlicePlan& plan = plans_[t];
       if (refine(plan, results_[t])) {
@@ -270,15 +225,21 @@ std::span<const model::SegmentResult> AutoModel::solve(std::span<const SegmentTa
         plan.unforeseen += once_more;
         return false;
       }
-      const Fidelity solved = plan.fidelity, up_to = tasks[t].scene->goal.up_to;
-      if (up_to == Fidelity::slice || solved == Fidelity::sliding || solved == Fidelity::axisym) return true;
+      const Fidelity solved = plan.fidelity;
+      if (tasks[t].scene->goal.up_to == Fidelity::slice || solved == Fidelity::axisym) return true;
+      const bool slid = solved == Fidelity::sliding;
       // Where slices have no answer, finer models may have none either, and cost far more.
-      if (!model::trustworthy(results_[t].status) || !(results_[t].pressure_rest > 0)) return true;
-      plan = climb(*tasks[t].scene, tasks[t].segment, plan, results_[t]);
+      if (!slid && (!model::trustworthy(results_[t].status) || !(results_[t].pressure_rest > 0))) return true;
+      const double asked = plan.asked;
+      plan = slid ? climb_from_sliding(*tasks[t].scene, tasks[t].segment, plan, results_[t])
+                  : climb(*tasks[t].scene, tasks[t].segment, plan, results_[t]);
+      if (plan.asked != asked) finer.push_back(t);
+      if (plan.fidelity != solved || plan.asked != asked) return false;
       results_[t].model_error = plan.change_beyond;
       model::derive_error(results_[t]);
-      return plan.fidelity == solved;
+      return true;
     });
+    plan_again(tasks, finer);
   }
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t t = 0; t < tasks.size(); ++t) {

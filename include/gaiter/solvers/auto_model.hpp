@@ -19,12 +19,6 @@ SlicePlan plan_segment(const model::Scene& scene, std::size_t segment);
 // cost little more than one.
 void plan_segments(std::span<const SegmentTask> tasks, std::vector<SlicePlan>& plans);
 
-// From a plan's result by slices, or something simpler: the same plan if finer models would change no wanted
-// output by more than the goal leaves (physics::model_errors), else sliding slices or, where these would not
-// do either, finite elements on the coarsest mesh.
-SlicePlan climb(const model::Scene& scene, std::size_t segment, const SlicePlan& slices,
-                const model::SegmentResult& result);
-
 // What one solve by a plan should take [s]; planning itself takes planning_cost.
 double plan_cost(const model::Scene& scene, std::size_t segment, const SlicePlan& plan);
 constexpr double planning_cost = 0.9e-6;  // [s]
@@ -48,6 +42,7 @@ class AutoModel {
   }  // of the last tasks, as solved; costs of all attempts
 
  private:
+  void plan_again(std::span<const SegmentTask> tasks, const std::vector<std::size_t>& chosen);
   void solve_group(std::span<const SegmentTask> tasks, const std::vector<std::size_t>& chosen);
   bool refine(SlicePlan& plan, const model::SegmentResult& result) const;
 

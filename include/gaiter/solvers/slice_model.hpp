@@ -26,13 +26,16 @@ struct SlicePlan {
   double height_error = 0;        // predicted, relative
   double roughness = 0;  // 0 to 1: how little the leg's law lets the pressure's Legendre coefficients fall
   double wall_error = 0;
-  double model_error = 0;    // against the finest model that the goal allows
-  double change_beyond = 0;  // by the models beyond this one, allowed or not; NaN: not known
-  double tolerance = 0;      // of the discretisation
-  double factor = 1;         // errors of the wanted outputs over those of the pressures
-  double cost = 0;           // predicted [s]
-  double unforeseen = 0;     // of it, for refinements that the plan did not expect [s]
-  bool actuated = true;      // false: the state under voltage is not wanted
+  double model_error = 0;      // against the finest model that the goal allows
+  double change_beyond = 0;    // by the models beyond this one, allowed or not; NaN: not known
+  double tolerance = 0;        // of the discretisation
+  double asked = 0;            // sum of tolerance and model_error
+  double factor = 1;           // errors of the wanted outputs over those of the pressures
+  double cost = 0;             // predicted [s]
+  double unforeseen = 0;       // of it, for refinements that the plan did not expect [s]
+  bool actuated = true;        // false: the state under voltage is not wanted
+  bool confirm = false;        // of sliding slices: their error is still to be found, from their residual
+  bool stable_nearby = false;  // the residual of the slices has found stable states of finite elements
 };
 
 // One segment of one design.

@@ -7,7 +7,7 @@
 
 #include "gaiter/petsc/session.hpp"
 #include "gaiter/solvers/axisym_model.hpp"
-#include "gaiter/solvers/model_error.hpp"
+#include "gaiter/solvers/residual_estimate.hpp"
 #include "gaiter/solvers/sliding_model.hpp"
 #include "paper_scene.hpp"
 
@@ -17,7 +17,7 @@ using namespace gaiter;
 using paper::cone;
 
 struct Compared {
-  solvers::ModelError estimated;
+  solvers::ResidualEstimate estimated;
   double pressure_rest = 0, actuation_drop = 0, volume_change = 0;  // true errors, relative
 };
 
@@ -28,7 +28,7 @@ Compared compare(const model::Scene& scene, model::Fidelity fidelity) {
                                        : solvers::solve_sliding(task).result;
   const model::SegmentResult exact = solvers::solve_axisym(PETSC_COMM_SELF, {&task, 1})[0];
   EXPECT_TRUE(model::trustworthy(exact.status));
-  Compared compared{.estimated = solvers::estimate_model_error(task, own, fidelity)};
+  Compared compared{.estimated = solvers::estimate_by_residual(task, own, fidelity)};
   compared.pressure_rest = own.pressure_rest / exact.pressure_rest - 1;
   compared.actuation_drop = own.actuation_drop / exact.actuation_drop - 1;
   compared.volume_change = own.volume_change / exact.volume_change - 1;
@@ -107,14 +107,14 @@ TEST(Estimates, AreNotReliableBeyondTheFold) {
   ASSERT_EQ(solvers::solve_axisym(PETSC_COMM_SELF, {&task, 1})[0].status, model::Status::no_equilibrium);
   const auto slices = solvers::solve_segments(PETSC_COMM_SELF, {&task, 1})[0];
   ASSERT_TRUE(model::trustworthy(slices.status));
-  EXPECT_FALSE(solvers::estimate_model_error(task, slices, model::Fidelity::slice).reliable);
+  EXPECT_FALSE(solvers::estimate_by_residual(task, slices, model::Fidelity::slice).reliable);
 }
 
 TEST(Estimates, SayNothingOfASlackBandage) {
   const model::Scene scene = cone(5, 0.9);
   const solvers::SegmentTask task{&scene, 0};
   const auto slices = solvers::solve_segments(PETSC_COMM_SELF, {&task, 1})[0];
-  const solvers::ModelError error = solvers::estimate_model_error(task, slices, model::Fidelity::slice);
+  const solvers::ResidualEstimate error = solvers::estimate_by_residual(task, slices, model::Fidelity::slice);
   EXPECT_FALSE(error.reliable);
   EXPECT_TRUE(std::isnan(error.largest()));
 }

@@ -3,7 +3,7 @@
 // tapers of 2 to 20 degrees, stretch 1.05 to 2.2, the paper's ankle compliance (anchored), radius 39.6 mm.
 // Of each output the true relative error and, in brackets, estimate over error; * marks what is not reliable.
 // Then what the estimate costs, over a solve by finite elements on the default mesh with its error estimate.
-// Usage: axisym_model_error [-voltage 4000] [-held]
+// Usage: axisym_residual_estimate [-voltage 4000] [-held]
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -11,7 +11,7 @@
 #include "gaiter/petsc/check.hpp"
 #include "gaiter/petsc/session.hpp"
 #include "gaiter/solvers/axisym_model.hpp"
-#include "gaiter/solvers/model_error.hpp"
+#include "gaiter/solvers/residual_estimate.hpp"
 #include "gaiter/solvers/sliding_model.hpp"
 #include "paper_scene.hpp"
 #include "processor_time.hpp"
@@ -41,7 +41,7 @@ void print_row(const model::Scene& scene) {
                                          ? solvers::solve_segments(PETSC_COMM_SELF, {&task, 1})[0]
                                          : solvers::solve_sliding(task).result;
     start = processor_seconds();
-    const solvers::ModelError error = solvers::estimate_model_error(task, own, fidelity);
+    const solvers::ResidualEstimate error = solvers::estimate_by_residual(task, own, fidelity);
     const double share = (processor_seconds() - start) / solve;
     std::printf(" |%s", error.reliable ? " " : "*");
     print_ratio(error.pressure_rest, own.pressure_rest, exact.pressure_rest);

@@ -8,7 +8,7 @@ namespace gaiter::solvers {
 
 // Relative errors of a simpler model's outputs against the axisymmetric finite elements, estimated: value
 // over theirs, less 1 [1]. NaN where the simpler model has no contact, and under voltage where there is none.
-struct ModelError {
+struct ResidualEstimate {
   // The way to the finite elements' state is one whole step of Newton's method, through stable states. Where
   // this is false the numbers may be as good, but there may also be no such state: a bandage whose fold at
   // rest or under voltage the simpler models do not see.
@@ -29,11 +29,11 @@ struct ModelError {
 // these: the simpler model's displacements, pressures and contact pressures are put into the residual on the
 // coarsest mesh, which is weighted by the dual solution of each output (AxisymDual), then once more after a
 // step of Newton's method, without which the ends that lift off do not show. The mesh's own error is below
-// some 1e-4. What it found against solved finite elements is in tests/model_error.cpp and
-// benchmarks/axisym_model_error.cpp.
+// some 1e-4. What it found against solved finite elements is in tests/residual_estimate.cpp and
+// benchmarks/axisym_residual_estimate.cpp.
 //
 // `own` is the segment's result by `fidelity`, slice or sliding. On this rank alone.
-ModelError estimate_model_error(const SegmentTask& task, const model::SegmentResult& own,
-                                model::Fidelity fidelity);
+ResidualEstimate estimate_by_residual(const SegmentTask& task, const model::SegmentResult& own,
+                                      model::Fidelity fidelity);
 
 }  // namespace gaiter::solvers

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-2-Clause
-#include "gaiter/solvers/model_error.hpp"
+#include "gaiter/solvers/residual_estimate.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -57,16 +57,16 @@ double weigh(double own, double expected, double before, double& spread) {
 
 }  // namespace
 
-double ModelError::largest() const {
+double ResidualEstimate::largest() const {
   double result = none;
   for (double error : {pressure_rest, pressure_actuated, actuation_drop, volume_change})
     result = std::fmax(result, std::fabs(error));
   return result;
 }
 
-ModelError estimate_model_error(const SegmentTask& task, const model::SegmentResult& own,
-                                model::Fidelity fidelity) {
-  ModelError error{
+ResidualEstimate estimate_by_residual(const SegmentTask& task, const model::SegmentResult& own,
+                                      model::Fidelity fidelity) {
+  ResidualEstimate error{
       .pressure_rest = none, .pressure_actuated = none, .actuation_drop = none, .volume_change = none};
   if (!model::trustworthy(own.status) || !(own.pressure_rest > 0)) return error;
   // The simpler models have the field in closed form; on the mesh it is the same to 2e-4 of the pressures.
