@@ -299,6 +299,7 @@ constexpr Bounds sliding_bounds{
 // the wide box, fitted to 426 segments there of two Sobol sequences (sobol_scenes.hpp from 0 on,
 // model_error_draws.hpp from 40000 on).
 struct WideBound {
+  double caution;
   double leg_shear, slack, slope_share, ends_share, share, strain;                  // signed
   double floor, sliding, slope, stiff_slope, slack_slope, slack_ends, sheared_leg;  // of the bound
 
@@ -313,14 +314,14 @@ struct WideBound {
                          std::fabs(shift.slope) * (slope + stiff_slope * share + slack_slope * loose) +
                          slack_ends * std::fabs(shift.ends) * loose +
                          sheared_leg * std::fabs(state.k * state.slide) * leg.load;
-    return std::fabs(lacking + beyond) + bound;
+    return caution * (std::fabs(lacking + beyond) + bound);
   }
 };
 
-constexpr WideBound wide_slice_bound{0.21, -0.316, -0.804, -0.388, -0.124, -0.339, 2e-4,
-                                     0.16, 0.23,   0.19,   0.37,   0.26,   1.6e-3};
-constexpr WideBound wide_sliding_bound{0.171, 0.159, -0.68, -2.08, -0.392, 0.256, 2e-4,
-                                       0.061, 0.21,  1.4,   0,     0.7,    2e-3};
+constexpr WideBound wide_slice_bound{1,    0.21, -0.316, -0.804, -0.388, -0.124, -0.339,
+                                     2e-4, 0.16, 0.23,   0.19,   0.37,   0.26,   1.6e-3};
+constexpr WideBound wide_sliding_bound{1.2,  0.171, 0.159, -0.68, -2.08, -0.392, 0.256,
+                                       2e-4, 0.061, 0.21,  1.4,   0,     0.7,    2e-3};
 
 }  // namespace
 
