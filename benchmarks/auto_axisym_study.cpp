@@ -42,6 +42,8 @@ constexpr double never = std::numeric_limits<double>::infinity();
 constexpr double share_of_spread = 0.4;  // as in solvers/auto_climb.cpp
 constexpr std::size_t many_slices = 256, many_sliding = 16;
 constexpr int repeats = 3;
+constexpr double truth_error = 1e-4;
+constexpr int finest = 3;
 
 // Of each of so many equal tasks [s]; the shortest of a few.
 template <typename Solve>
@@ -121,7 +123,8 @@ Known solve_all(const model::Scene& scene, int refine) {
                       by_residual(task, slices.result, Fidelity::slice)};
   sliding.estimates = {closed(errors.sliding, sliding.result, slices.cost + closed_form),
                        by_residual(task, sliding.result, Fidelity::sliding)};
-  for (int level = 0; level <= refine; ++level) {
+  double own = 0;  // error of the last mesh
+  for (int level = 0; level <= refine || (own > truth_error && level <= finest); ++level) {
     model::Scene one = scene;
     one.axisym.refine = level;
     Rung mesh;
@@ -131,6 +134,7 @@ Known solve_all(const model::Scene& scene, int refine) {
     mesh.estimates = {{mesh.result.discretisation_error, 0}};
     known.rungs.push_back(mesh);
     if (!model::trustworthy(mesh.result.status)) break;
+    own = mesh.result.discretisation_error;
   }
   known.truth = known.rungs.back().result;
   for (Rung& rung : known.rungs) rung.error = error_of(rung.result, known.truth);
@@ -203,7 +207,7 @@ int main(int argc, char** argv) {
   std::printf("%zu of %d scenes have a stable state in contact on the mesh\n", all.size(),
               static_cast<int>(count));
   std::printf("error of slices, sliding, meshes; median:");
-  for (std::size_t k = 0; !all.empty() && k < all[0].rungs.size(); ++k) {
+  for (std::size_t k = 0; !all.empty() && k < 3 + static_cast<std::size_t>(refine); ++k) {
     std::vector<double> errors;
     for (const Known& one : all) errors.push_back(one.rungs[k].error);
     std::printf(" %.1e", quantile(errors, 0.5));

@@ -165,8 +165,8 @@ TEST(ModelShift, DoesNotSlideWhereTheBandageIsHeld) {
 TEST(ModelError, BoundsThePressureSomeWayBeyondItsBox) {
   std::vector<double> sliding_ratios;
   Comparison slice;
-  for (const double degrees : {3.0, 8.0, 14.0, 19.0})
-    for (const double stretch : {1.1, 1.3, 1.6, 1.9, 2.2, 2.5})
+  for (const double degrees : {3.0, 8.0, 18.0})
+    for (const double stretch : {1.1, 1.3, 1.9, 2.2, 2.5})
       for (const double stiffness : {0.2, 30.0, 300.0}) {
         ConeCase cone{.taper = degrees * M_PI / 180, .stretch = stretch, .slenderness = 0.8};
         cone.wall = stiffness < 1 ? 0.06 : 0.002;

@@ -48,6 +48,7 @@ constexpr Bounds sliding_bounds{
 // the wide box, fitted to 426 segments there of two Sobol sequences (sobol_scenes.hpp from 0 on,
 // model_error_draws.hpp from 40000 on).
 struct WideBound {
+  double caution;
   double leg_shear, slack, slope_share, ends_share, share, strain;                  // signed
   double floor, sliding, slope, stiff_slope, slack_slope, slack_ends, sheared_leg;  // of the bound
 
@@ -63,11 +64,12 @@ struct WideBound {
                          std::fabs(shift.slope) * (slope + stiff_slope * given + slack_slope * loose) +
                          slack_ends * std::fabs(shift.ends) * loose +
                          sheared_leg * std::fabs(state.k * state.slide) * load;
-    return std::fabs(lacking + beyond) + bound;
+    return caution * (std::fabs(lacking + beyond) + bound);
   }
 };
 
-constexpr WideBound wide_slice_bound{.leg_shear = 0.21,
+constexpr WideBound wide_slice_bound{.caution = 1,
+                                     .leg_shear = 0.21,
                                      .slack = -0.316,
                                      .slope_share = -0.804,
                                      .ends_share = -0.388,
@@ -80,7 +82,8 @@ constexpr WideBound wide_slice_bound{.leg_shear = 0.21,
                                      .slack_slope = 0.37,
                                      .slack_ends = 0.26,
                                      .sheared_leg = 1.6e-3};
-constexpr WideBound wide_sliding_bound{.leg_shear = 0.171,
+constexpr WideBound wide_sliding_bound{.caution = 1.2,
+                                       .leg_shear = 0.171,
                                        .slack = 0.159,
                                        .slope_share = -0.68,
                                        .ends_share = -2.08,
