@@ -19,8 +19,8 @@ using physics::Pack;
 using physics::pack_width;
 using physics::SliceShape;
 
-constexpr double wall_tolerance =
-    1e-12;  // of the quadrature through the wall, where the points are chosen here
+// Of the quadrature through the wall, where the points are chosen here.
+constexpr double wall_tolerance = 1e-12, wall_tolerance_in_single = 1e-8;
 
 }  // namespace
 
@@ -67,13 +67,17 @@ void SliceModel::take(std::span<const SegmentTask> tasks) {
     shape.layers = std::max(shape.layers, voltage ? scene.bandage.layers : 0);
     shape.ogden_terms = static_cast<int>(scene.bandage.ogden.size());
     shape.material = scene.leg.material;
+    shape.single = !task.plan && scene.fidelity == model::Fidelity::slice &&
+                   scene.leg.model != model::LegModel::rigid &&
+                   scene.discretisation.slice_precision == model::SlicePrecision::in_single;
     voltage_somewhere = voltage_somewhere || voltage;
     all_newton = all_newton && scene.discretisation.slice_solver == model::SliceSolver::newton;
   }
   energised_ = !petsc::agree(comm_, !voltage_somewhere);
   newton_ = petsc::agree(comm_, all_newton);
   forecast();
-  if (forecasts_.size() == tasks.size()) physics::choose_wall_points(numbers_, wall_tolerance);
+  if (forecasts_.size() == tasks.size())
+    physics::choose_wall_points(numbers_, shape.single ? wall_tolerance_in_single : wall_tolerance);
   for (std::size_t t = 0; t < tasks.size(); ++t) {
     const int points = tasks[t].scene->discretisation.wall_points;
     if (!tasks[t].plan && points == 0) continue;

@@ -295,6 +295,7 @@ void SliceSolver::put_back() {
 
 void SliceSolver::close_small_steps(Totals& totals) {
   Pack strain, pressure;
+  const double tolerance = physics::reachable(system_->shape(), tolerance_);
   for (PackState& state : *states_) {
     physics::solve_blocks(state.strain_slope, state.bandage_slope, state.strain_residual,
                           state.pressure_residual, strain, pressure);
@@ -303,7 +304,7 @@ void SliceSolver::close_small_steps(Totals& totals) {
         state.left[i] = std::fabs(pressure[i]);
         state.settled_slope[i] = state.bandage_slope[i];
       }
-      if (std::fabs(pressure[i]) <= tolerance_ * std::fabs(state.pressure[i])) state.open[i] = 0;
+      if (std::fabs(pressure[i]) <= tolerance * std::fabs(state.pressure[i])) state.open[i] = 0;
       state.iterations[i] += state.open[i];
     }
     totals.open += count_open(state);

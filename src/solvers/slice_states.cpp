@@ -24,8 +24,9 @@ namespace {
 constexpr double doubtful_slope = 0.5;
 constexpr double small_actuation =
     0.1;  // of the pressure at rest: a part of the path that few points resolve
-constexpr double error_of_drop = 1e-12;  // relative, for which its difference of pressures is good enough
-constexpr int points_of_drop = 4;        // of the mean slope on this part
+// Relative, for which its difference of pressures is good enough.
+constexpr double error_of_drop = 1e-12, error_of_drop_in_single = 1e-4;
+constexpr int points_of_drop = 4;  // of the mean slope on this part
 
 }  // namespace
 
@@ -139,11 +140,12 @@ void SliceModel::finish_actuated(model::Fidelity fidelity) {
 // residual at rest between the two states, which is the actuation pressure, over its mean slope.
 void SliceModel::small_drops(std::size_t k) {
   SliceOutcomes& outcomes = outcomes_[k];
+  const double enough = system_.shape().single ? error_of_drop_in_single : error_of_drop;
   int small[pack_width], any = 0;
   for (int i = 0; i < pack_width; ++i) {
     small[i] = outcomes.pressure_actuated[i] > 0 &&
                outcomes.actuation_pressure[i] < small_actuation * outcomes.pressure_rest[i] &&
-               outcomes.error_of_difference[i] > error_of_drop * outcomes.actuation_drop[i];
+               outcomes.error_of_difference[i] > enough * outcomes.actuation_drop[i];
     any |= small[i];
   }
   if (!any) return;
