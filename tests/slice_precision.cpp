@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-2-Clause
-// Slices in single precision against the same in double: the estimated error holds what is lost, wherever
-// rounding is amplified, and statuses stay.
+// Slices in single precision, or with Newton's method stopped early, against the same in full: the estimated
+// error holds what is lost, wherever rounding is amplified, and statuses stay.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,12 +29,15 @@ double relative(double value, double exact) {
   return larger > 0 ? std::fabs(value - exact) / larger : 0;
 }
 
-// Solves all in both precisions and checks each pressure.
-Loss compare(std::vector<model::Scene> scenes, const std::string& what) {
+// Solves all in full and with less, and checks each pressure.
+Loss compare(std::vector<model::Scene> scenes, const std::string& what,
+             SlicePrecision precision = SlicePrecision::in_single, double newton_tolerance = 1e-12) {
   SCOPED_TRACE(what);
-  for (model::Scene& scene : scenes) scene.discretisation.slice_precision = SlicePrecision::in_double;
   const auto exact = solvers::solve_segments(PETSC_COMM_SELF, tasks::all_segments(scenes));
-  for (model::Scene& scene : scenes) scene.discretisation.slice_precision = SlicePrecision::in_single;
+  for (model::Scene& scene : scenes) {
+    scene.discretisation.slice_precision = precision;
+    scene.discretisation.newton_tolerance = newton_tolerance;
+  }
   const auto found = solvers::solve_segments(PETSC_COMM_SELF, tasks::all_segments(scenes));
   Loss loss;
   for (std::size_t i = 0; i < exact.size(); ++i) {
@@ -83,6 +86,21 @@ TEST(SinglePrecision, OfRandomSlices) {
     EXPECT_GT(loss.share.size(), 1000u);
     EXPECT_LT(loss.estimate[loss.estimate.size() / 2], 2e-5);
     EXPECT_GT(loss.share[loss.share.size() / 2], 1e-3);  // no wild guess
+  }
+}
+
+TEST(EarlyEnd, OfRandomSlices) {
+  for (const auto material : {model::LegMaterial::compliance, model::LegMaterial::neo_hookean}) {
+    samples::Sampler sampler(11);
+    std::vector<model::Scene> scenes;
+    for (int k = 0; k < 1500; ++k) scenes.push_back(sampler.scene(material, 1));
+    for (const double tolerance : {1e-1, 1e-3, 1e-6}) {
+      const Loss loss =
+          compare(scenes, "Newton to " + std::to_string(tolerance), SlicePrecision::in_double, tolerance);
+      EXPECT_EQ(loss.other_status, 0);
+      EXPECT_GT(loss.share.size(), 1000u);
+      EXPECT_GT(loss.share.back(), 1e-2);  // something is lost
+    }
   }
 }
 

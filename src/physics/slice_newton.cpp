@@ -11,6 +11,7 @@ constexpr double epsilon = 2.2e-16;
 constexpr double single_epsilon = 1.2e-7;  // of the exponentials and logarithms, where these are single
 constexpr double reachable_in_single = 2 * single_epsilon;
 constexpr double rounding_caution = 8, caution_in_single = 4;  // of estimates of rounding errors
+constexpr double left_caution = 3;                             // of what the last step leaves
 // A priori estimates of the quadrature through the wall can be a few times too low where it is almost exact.
 constexpr double wall_caution = 16, smallest_sure_wall_error = 1e-12;
 // Part of the leg's pressure by which the bandage may be below 0 in a state that is called close to
@@ -213,7 +214,11 @@ void advance_newton(const SliceShape& shape, const Pack* rows, const Pack& direc
     // What has lifted off by less than the rounding may touch yet.
     const bool touching = trial[i] == 0 && bandage[i] + coarse * state.rounding[i] > 0;
     const double undecided = touching ? coarse * state.rounding[i] : missed;
-    state.left[i] = open && closing ? (polish ? error : undecided) : state.left[i];
+    // The constant of the convergence, as two steps tell it, may be small by chance; that of a law of powers
+    // is about the inverse of the pressure.
+    const double curved = 0.5 * next * (next / (polish ? kept : 1.0));
+    const double beyond = left_caution * (error > curved ? error : curved);
+    state.left[i] = open && closing ? (polish ? beyond : undecided) : state.left[i];
     state.settled_slope[i] = open ? steep : state.settled_slope[i];
     state.iterations[i] += state.open[i];
     state.open[i] = open && !closing ? 1 : 0;

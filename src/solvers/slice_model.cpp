@@ -178,13 +178,16 @@ void SliceModel::set_segments(std::span<const std::size_t> tasks, physics::Segme
 }
 
 // One solver serves all batches, unless one is larger than any before.
-void SliceModel::prepare_solver(model::SliceSolver algorithm, double tolerance) {
+void SliceModel::prepare_solver(model::SliceSolver algorithm, double fixed_point_tolerance,
+                                double newton_tolerance) {
   const bool fits = solver_ && system_.packs() <= solver_->packs() && algorithm == algorithm_ &&
-                    tolerance == fixed_point_tolerance_;
+                    fixed_point_tolerance == fixed_point_tolerance_ && newton_tolerance == newton_tolerance_;
   if (petsc::agree(comm_, fits)) return;
   algorithm_ = algorithm;
-  fixed_point_tolerance_ = tolerance;
-  solver_ = std::make_unique<SliceSolver>(comm_, system_.packs(), algorithm, tolerance);
+  fixed_point_tolerance_ = fixed_point_tolerance;
+  newton_tolerance_ = newton_tolerance;
+  solver_ = std::make_unique<SliceSolver>(comm_, system_.packs(), algorithm, fixed_point_tolerance,
+                                          newton_tolerance);
 }
 
 // On a leg that does not give way.
@@ -244,7 +247,8 @@ std::span<const model::SegmentResult> SliceModel::solve(std::span<const SegmentT
     solve_first_order();
   } else {
     prepare_solver(newton_ ? model::SliceSolver::newton : model::SliceSolver::fixed_point,
-                   petsc::largest(comm_, scene ? scene->discretisation.fixed_point_tolerance : 0));
+                   petsc::largest(comm_, scene ? scene->discretisation.fixed_point_tolerance : 0),
+                   petsc::largest(comm_, scene ? scene->discretisation.newton_tolerance : 0));
     rest();
     rigid_pressures();
     if (energised_) actuate();

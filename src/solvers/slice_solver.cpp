@@ -16,7 +16,6 @@ using physics::Pack;
 using physics::pack_width;
 using physics::PackState;
 
-constexpr double newton_tolerance = 1e-12;
 constexpr int newton_steps = 80;
 constexpr int fixed_point_steps = 2000;
 constexpr double sparse = 0.5;  // part of the packs' slices that are open, below which these are gathered
@@ -54,14 +53,14 @@ void copy_slice(const PackState& from, int i, PackState& to, int j) {
 }  // namespace
 
 SliceSolver::SliceSolver(MPI_Comm comm, std::size_t packs, model::SliceSolver algorithm,
-                         double fixed_point_tolerance)
+                         double fixed_point_tolerance, double newton_tolerance)
     : packs_(packs),
       newton_(algorithm == model::SliceSolver::newton),
       fixed_point_tolerance_(fixed_point_tolerance) {
-  petsc::check(create(comm));
+  petsc::check(create(comm, newton_tolerance));
 }
 
-PetscErrorCode SliceSolver::create(MPI_Comm comm) {
+PetscErrorCode SliceSolver::create(MPI_Comm comm, double newton_tolerance) {
   PetscFunctionBegin;
   PetscCall(create_matrix(comm));
   PetscCall(BatchSolver::create(

@@ -23,7 +23,9 @@ struct Discretisation {
   int wall_points = 0;  // Gauss points through the wall; 0: as many as the wall needs
   SliceSolver slice_solver = SliceSolver::newton;
   SlicePrecision slice_precision = SlicePrecision::in_double;
-  int sliding_count = 24;               // slices of a sliding segment, rounded up to a multiple of three
+  double newton_tolerance =
+      1e-12;               // relative, of a slice's pressure, unless -slice_snes_rtol says another [1]
+  int sliding_count = 24;  // slices of a sliding segment, rounded up to a multiple of three
   double fixed_point_tolerance = 1e-4;  // change of r over the undeformed radius at which the paper stops [1]
 };
 
