@@ -121,8 +121,8 @@ std::string check_archive(const std::string& path, int code, const std::vector<s
       if (variable.numbers.size() != status.size() || name == "wall_time" || name == "status") continue;
       const double value = variable.numbers[row];
       // Without friction a leg that does not give way may have no equilibrium where a soft one has.
-      const bool may_be_missing = name == "voltage_stable" || name == "model_error" || name.starts_with("planned_") ||
-                                  (sliding && of_rigid_leg(name)) ||
+      const bool may_be_missing = name == "voltage_stable" || name == "model_error" ||
+                                  name.starts_with("planned_") || (sliding && of_rigid_leg(name)) ||
                                   (here == model::Status::pulled_in &&
                                    (name == "electric_field_max" || name == "actuation_pressure"));
       if (!model::trustworthy(here) || (may_be_missing && std::isnan(value))) continue;
