@@ -23,6 +23,7 @@ gaiter_slice_test(slice_reference LABEL properties RANKS 1 2 3)
 gaiter_slice_test(slice_newton LABEL properties RANKS 1 2 3)
 gaiter_slice_test(slice_extremes LABEL properties RANKS 1)
 gaiter_slice_test(slice_branches LABEL properties RANKS 1)
+gaiter_slice_test(slice_precision LABEL properties RANKS 1)
 gaiter_slice_test(extremes LABEL properties RANKS 1)
 target_link_libraries(extremes PRIVATE gaiter_studies)
 # The Jacobian by differences, without further options.

@@ -50,8 +50,8 @@ inline std::string describe(const model::Scene& scene) {
   for (const model::OgdenTerm& t : bandage.ogden) text += fmt::format("{} {}\n", t.mu, t.alpha);
   text += fmt::format("{} {} {} {} {}\n", bandage.thickness, int(bandage.length_at), bandage.permittivity,
                       bandage.layers, bandage.breakdown_field);
-  text += fmt::format("{} {} {} {} {} {}\n", int(fidelity), int(how.slice_rule), how.slice_count,
-                      how.wall_points, int(how.slice_solver), how.fixed_point_tolerance);
+  text += fmt::format("{} {} {} {} {} {} {}\n", int(fidelity), int(how.slice_precision), int(how.slice_rule),
+                      how.slice_count, how.wall_points, int(how.slice_solver), how.fixed_point_tolerance);
   text +=
       fmt::format("{} {} {} {} {} {} {}\n", int(contact_axial), how.sliding_count, int(axisym.electrostatics),
                   int(axisym.multipliers), axisym.order, axisym.refine, axisym.ranks_per_case);

@@ -114,6 +114,8 @@ TEST(Scene, EveryOptionSetsItsOwnValue) {
       {"slice_count", "64", 64, [](const Scene& s) { return double(s.discretisation.slice_count); }},
       {"slice_fixed_point_tolerance", "0.01 %", 1e-4,
        [](const Scene& s) { return s.discretisation.fixed_point_tolerance; }},
+      {"slice_precision", "single", 1,
+       [](const Scene& s) { return double(s.discretisation.slice_precision); }},
       {"slice_rule", "midpoint", 1, [](const Scene& s) { return double(s.discretisation.slice_rule); }},
       {"slice_solver", "fixed_point", 1,
        [](const Scene& s) { return double(s.discretisation.slice_solver); }},

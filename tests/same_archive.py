@@ -17,6 +17,8 @@ STUDIES = {
              "-accuracy", "1e-4", "-sweep_bandage_stretch", "1.1,1.4,2.2", "-sweep_voltage", "0 kV,11.3 kV"],
     "some segments": ["solve", "-options_file", PAPER, "-comparison", "none", "-fidelity", "auto", "-auto_up_to", "slice",
                       "-outputs", "r5.pressure_rest,r2.actuation_drop,r1.volume_change"],
+    "single precision": ["sweep", "-options_file", PAPER, "-comparison", "none", "-slice_precision", "single",
+                         "-sweep_bandage_stretch", "1.05,1.4,2.2", "-sweep_voltage", "0 kV,11.3 kV"],
     "sliding": ["sweep", "-options_file", PAPER, "-comparison", "none", "-fidelity", "sliding",
                 "-sweep_bandage_stretch", "1.4,2.2"],
     # Legs that are solved as a whole stay on one rank.

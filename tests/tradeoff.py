@@ -42,6 +42,7 @@ class Tradeoff(InFolder):
         self.assertGreater(error["midpoints_4"], 10 * error["midpoints_16"])
         self.assertGreater(error["slices_6_wall_1"], 10 * error["slices_6_wall_2"])
         self.assertGreater(error["slices_6_fixed_point"], 100 * error["slices_6"])
+        self.check_less_solved(names, found, error)
         self.assertEqual((found["unknowns"][names["rigid"]] + found["iterations"][names["rigid"]]).max(), 0)
         self.assertEqual(found["unknowns"][names["slices_6"]].tolist(), 4 * [12])
         # What no cheaper rung surpasses is marked.
@@ -52,6 +53,46 @@ class Tradeoff(InFolder):
             case = names[name]
             cheaper = found["segment_time"] < found["segment_time"][case]
             self.assertEqual("*" in line, not (found["true_error"][cheaper] <= found["true_error"][case]).any(), line)
+
+    def check_less_solved(self, names, found, error):
+        """What single precision, an early end and the fixed point lose is known beforehand."""
+        self.assertGreater(error["slices_6_single"], 10 * error["slices_6"])
+        self.assertLess(error["slices_6_single"], 1e-5)
+        self.assertGreater(error["slices_6_newton_1e-01"], 100 * error["slices_6"])
+        self.assertLessEqual(error["slices_6_newton_1e-06"], error["slices_6_newton_1e-01"])
+        steps = {name: found["iterations"][case].max() for name, case in names.items()}
+        self.assertLess(steps["slices_6_newton_1e-01"], steps["slices_6"])
+        for name in ("slices_2_single", "slices_6_single", "slices_6_newton_1e-01", "slices_6_newton_1e-03",
+                     "slices_6_newton_1e-06", "slices_6_fixed_point"):
+            self.assertLessEqual(error[name], found["discretisation_error"][names[name]].max(), name)
+            self.assertEqual(found["fidelity"][names[name]].tolist(), found["fidelity"][names["slices_6"]].tolist())
+
+    def test_a_tolerance_that_is_given_holds_for_all(self):
+        names, _, _ = self.rungs(*SCENE, "-auto_up_to", "slice", "-slice_snes_rtol", "1e-1")
+        self.assertFalse([name for name in names if "newton" in name])
+
+    def test_what_auto_took_is_marked(self):
+        names, found, out = self.rungs(*SCENE, "-auto_up_to", "slice", "-accuracy", "0.025", "-outputs",
+                                       "pressure_rest,pressure_actuated")
+        self.assertIn("auto_0.025", names)
+        words = dict(enumerate(("rigid", "slice", "sliding", "axisym", "first_order")))
+        lines = {line.split()[0]: line for line in out.splitlines() if line.strip()}
+        marked = 0
+        for name, case in names.items():
+            if not name.startswith("auto_"):
+                continue
+            for model, slices, points in zip(*(found[what][case] for what in
+                                               ("fidelity", "slices_used", "wall_points_used"))):
+                self.assertIn(f"{words[model]} {slices} x {points}", lines[name])
+                rung = f"slices_{slices}" if words[model] == "slice" else words[model]
+                if rung in lines:
+                    self.assertIn(name, lines[rung].split("<")[1])
+                    marked += 1
+        self.assertGreater(marked, 5)
+        self.run_gaiter("report", "-archive", "rungs.h5")
+        text = (self.folder / "rungs.html").read_text(encoding="utf-8")
+        self.assertIn("<th>taken by auto</th>", text)
+        self.assertRegex(text, r"<td>auto_1e-01</td>.*?<td>(rigid|first_order|slice) [0-9]+ x [0-9]+")
 
     def test_page(self):
         self.rungs(*SCENE, "-auto_up_to", "slice")

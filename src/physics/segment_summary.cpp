@@ -99,7 +99,10 @@ model::SegmentResult SegmentSummary::result(int i, double quadrature_error) cons
   result.radius_actuated = radius_[i];
   result.stretch_actual = stretch_[i];
   result.electric_field_max = status == model::Status::pulled_in ? none : field_[i];
-  const auto relative = [](double error, double pressure) { return pressure > 0 ? error / pressure : 0; };
+  // Of no pressure that might be one, all is in doubt.
+  const auto relative = [](double error, double pressure) {
+    return pressure > 0 ? error / pressure : error > 0 ? 1.0 : 0.0;
+  };
   result.discretisation_error = quadrature_error + std::max(relative(rest_error_[i], rest_[i]),
                                                             relative(actuated_error_[i], actuated_[i]));
   model::derive_error(result);

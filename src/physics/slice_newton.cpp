@@ -8,7 +8,10 @@ namespace gaiter::physics {
 namespace {
 
 constexpr double epsilon = 2.2e-16;
-constexpr double rounding_caution = 8;  // of an estimate of rounding errors
+constexpr double single_epsilon = 1.2e-7;  // of the exponentials and logarithms, where these are single
+constexpr double reachable_in_single = 2 * single_epsilon;
+constexpr double rounding_caution = 8, caution_in_single = 4;  // of estimates of rounding errors
+constexpr double left_caution = 3;                             // of what the last step leaves
 // A priori estimates of the quadrature through the wall can be a few times too low where it is almost exact.
 constexpr double wall_caution = 16, smallest_sure_wall_error = 1e-12;
 // Part of the leg's pressure by which the bandage may be below 0 in a state that is called close to
@@ -124,9 +127,16 @@ void solve_blocks(const Pack& strain_slope, const Pack& bandage_slope, const Pac
   }
 }
 
+double reachable(const SliceShape& shape, double tolerance) {
+  return shape.single && tolerance < reachable_in_single ? reachable_in_single : tolerance;
+}
+
 GAITER_MULTIVERSION
 void advance_newton(const SliceShape& shape, const Pack* rows, const Pack& direction, double tolerance,
                     PackState& state) {
+  tolerance = reachable(shape, tolerance);
+  const double finest = shape.single ? single_epsilon : epsilon;
+  const double coarse = shape.single ? caution_in_single * single_epsilon : 0;
   Pack trial, quadratic, remote;
   GAITER_EACH {
     const double pressure = state.pressure[i];
@@ -182,8 +192,8 @@ void advance_newton(const SliceShape& shape, const Pack* rows, const Pack& direc
     const bool converging = quadratic[i] > 0 && slope > 0 && next < 0.1 * taken;
     const double error = converging ? next * (next / taken) * (next / taken) : next;
     const double rounding = std::fabs(bandage[i]) + state.rounding[i];
-    const double noise = 2 * epsilon * (trial[i] + rounding / (slope > 1 ? slope : 1));
-    const bool collapsed = high - low <= 2 * epsilon * high;
+    const double noise = 2 * finest * (trial[i] + rounding / (slope > 1 ? slope : 1));
+    const bool collapsed = high - low <= 2 * finest * high;
     const bool near = !(bandage[i] < -crushing * trial[i]);
     const bool closing =
         residual == 0 || (near && slope > 0 && (error <= tolerance * trial[i] || next <= noise)) || collapsed;
@@ -204,7 +214,14 @@ void advance_newton(const SliceShape& shape, const Pack* rows, const Pack& direc
     state.high[i] = open ? high : state.high[i];
     state.smallest_slope[i] = open && slope < state.smallest_slope[i] ? slope : state.smallest_slope[i];
     const double missed = slope > 0 ? next : high - low;
-    state.left[i] = open && closing ? (polish ? error : missed) : state.left[i];
+    // What has lifted off by less than the rounding may touch yet.
+    const bool touching = trial[i] == 0 && bandage[i] + coarse * state.rounding[i] > 0;
+    const double undecided = touching ? coarse * state.rounding[i] : missed;
+    // The constant of the convergence, as two steps tell it, may be small by chance; that of a law of powers
+    // is about the inverse of the pressure.
+    const double curved = 0.5 * next * (next / (polish ? kept : 1.0));
+    const double beyond = left_caution * (error > curved ? error : curved);
+    state.left[i] = open && closing ? (polish ? beyond : undecided) : state.left[i];
     state.settled_slope[i] = open ? steep : state.settled_slope[i];
     state.iterations[i] += state.open[i];
     state.open[i] = open && !closing ? 1 : 0;
@@ -246,8 +263,9 @@ GAITER_MULTIVERSION
 void pressure_error(const SliceShape& shape, const Pack* rows, const PackState& state, const Pack& wall_error,
                     const Pack& passive_wall_error, PressureError& error) {
   const double law = shape.material == model::LegMaterial::compliance ? 1 : 0;
+  const double coarse = shape.single ? caution_in_single * single_epsilon : 0;
   const Pack &gap = rows[SliceShape::gap], &radius = rows[SliceShape::leg_radius],
-             &leg = rows[SliceShape::leg_1];
+             &leg = rows[SliceShape::leg_1], &unstrained = rows[SliceShape::leg_2];
   GAITER_EACH {
     const double pressure = state.pressure[i];
     // Strain at which the bandage is slack, and the largest part of the leg's strain.
@@ -261,9 +279,15 @@ void pressure_error(const SliceShape& shape, const Pack* rows, const PackState& 
     const double excess = passive > pressure ? passive - pressure : 0;
     const double sure = wall_error[i] < smallest_sure_wall_error ? wall_error[i] : smallest_sure_wall_error;
     const double wall = passive_wall_error[i] * excess + wall_caution * sure * passive;
-    const double solution = state.left[i] + rounding_caution * epsilon * (pressure + bandage);
+    // What single precision rounds: the way from slack, and the leg's strain by the pressure.
+    const double moved =
+        std::fabs(gap[i] / radius[i] - state.strain[i]) + law * std::fabs(state.strain[i] - unstrained[i]);
+    const double rounded = pressure + 2 * passive + std::fabs(steep) * moved / slope;
+    const double solution =
+        state.left[i] + rounding_caution * epsilon * (pressure + bandage) + coarse * rounded;
     error.wall[i] = pressure > 0 ? wall : 0;
-    error.solution[i] = pressure > 0 ? solution : 0;
+    const double lifted = coarse * state.rounding[i];
+    error.solution[i] = pressure > 0 ? solution : state.left[i] < lifted ? 0 : lifted;
   }
 }
 

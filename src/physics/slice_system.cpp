@@ -192,6 +192,7 @@ void SliceSystem::gather(std::span<const std::size_t> slices, Pack* rows) const 
 SliceSystem SliceSystem::replicate(std::size_t index) const {
   SliceShape shape = shape_;
   shape.layers = layers_;
+  shape.single = false;
   SliceSystem copy(shape, pack_width);
   copy.shape_.layers = shape_.layers;
   for (std::size_t row = 0; row < rows_per_pack_; ++row)

@@ -20,8 +20,8 @@ using physics::Pack;
 using physics::pack_width;
 using physics::SliceShape;
 
-constexpr double wall_tolerance =
-    1e-12;  // of the quadrature through the wall, where the points are chosen here
+// Of the quadrature through the wall, where the points are chosen here.
+constexpr double wall_tolerance = 1e-12, wall_tolerance_in_single = 1e-8;
 
 }  // namespace
 
@@ -37,7 +37,8 @@ const physics::Quadrature& SliceModel::wall_rule(int points) {
   return found->second;
 }
 
-// What is known of the errors of tasks that are not planned, where more is wanted than slices themselves tell.
+// What is known of the errors of tasks that are not planned, where more is wanted than slices themselves
+// tell.
 void SliceModel::forecast() {
   forecasts_.clear();
   const auto asks = [](const SegmentTask& task) {
@@ -66,6 +67,9 @@ void SliceModel::take(std::span<const SegmentTask> tasks) {
     shape.layers = std::max(shape.layers, voltage ? scene.bandage.layers : 0);
     shape.ogden_terms = static_cast<int>(scene.bandage.ogden.size());
     shape.material = scene.leg.material;
+    shape.single = !task.plan && scene.fidelity == model::Fidelity::slice &&
+                   scene.leg.model != model::LegModel::rigid &&
+                   scene.discretisation.slice_precision == model::SlicePrecision::in_single;
     voltage_somewhere = voltage_somewhere || voltage;
     all_newton = all_newton && scene.discretisation.slice_solver == model::SliceSolver::newton;
   }
@@ -73,7 +77,8 @@ void SliceModel::take(std::span<const SegmentTask> tasks) {
   newton_ = petsc::agree(comm_, all_newton);
   planned_ = std::any_of(tasks.begin(), tasks.end(), [](const SegmentTask& task) { return task.plan; });
   forecast();
-  if (!planned_) physics::choose_wall_points(numbers_, wall_tolerance);
+  if (!planned_)
+    physics::choose_wall_points(numbers_, shape.single ? wall_tolerance_in_single : wall_tolerance);
   for (std::size_t t = 0; t < tasks.size(); ++t) {
     const int points = tasks[t].scene->discretisation.wall_points;
     if (!tasks[t].plan && points == 0) continue;
@@ -174,13 +179,16 @@ void SliceModel::set_segments(std::span<const std::size_t> tasks, physics::Segme
 }
 
 // One solver serves all batches, unless one is larger than any before.
-void SliceModel::prepare_solver(model::SliceSolver algorithm, double tolerance) {
+void SliceModel::prepare_solver(model::SliceSolver algorithm, double fixed_point_tolerance,
+                                double newton_tolerance) {
   const bool fits = solver_ && system_.packs() <= solver_->packs() && algorithm == algorithm_ &&
-                    tolerance == fixed_point_tolerance_;
+                    fixed_point_tolerance == fixed_point_tolerance_ && newton_tolerance == newton_tolerance_;
   if (petsc::agree(comm_, fits)) return;
   algorithm_ = algorithm;
-  fixed_point_tolerance_ = tolerance;
-  solver_ = std::make_unique<SliceSolver>(comm_, system_.packs(), algorithm, tolerance);
+  fixed_point_tolerance_ = fixed_point_tolerance;
+  newton_tolerance_ = newton_tolerance;
+  solver_ = std::make_unique<SliceSolver>(comm_, system_.packs(), algorithm, fixed_point_tolerance,
+                                          newton_tolerance);
 }
 
 // On a leg that does not give way.
@@ -240,7 +248,8 @@ std::span<const model::SegmentResult> SliceModel::solve(std::span<const SegmentT
     solve_first_order();
   } else {
     prepare_solver(newton_ ? model::SliceSolver::newton : model::SliceSolver::fixed_point,
-                   petsc::largest(comm_, scene ? scene->discretisation.fixed_point_tolerance : 0));
+                   petsc::largest(comm_, scene ? scene->discretisation.fixed_point_tolerance : 0),
+                   petsc::largest(comm_, scene ? scene->discretisation.newton_tolerance : 0));
     rest();
     rigid_pressures();
     if (energised_) actuate();

@@ -16,7 +16,6 @@ using physics::Pack;
 using physics::pack_width;
 using physics::PackState;
 
-constexpr double newton_tolerance = 1e-12;
 constexpr int newton_steps = 80;
 constexpr int fixed_point_steps = 2000;
 constexpr double sparse = 0.5;  // part of the packs' slices that are open, below which these are gathered
@@ -54,14 +53,14 @@ void copy_slice(const PackState& from, int i, PackState& to, int j) {
 }  // namespace
 
 SliceSolver::SliceSolver(MPI_Comm comm, std::size_t packs, model::SliceSolver algorithm,
-                         double fixed_point_tolerance)
+                         double fixed_point_tolerance, double newton_tolerance)
     : packs_(packs),
       newton_(algorithm == model::SliceSolver::newton),
       fixed_point_tolerance_(fixed_point_tolerance) {
-  petsc::check(create(comm));
+  petsc::check(create(comm, newton_tolerance));
 }
 
-PetscErrorCode SliceSolver::create(MPI_Comm comm) {
+PetscErrorCode SliceSolver::create(MPI_Comm comm, double newton_tolerance) {
   PetscFunctionBegin;
   PetscCall(create_matrix(comm));
   PetscCall(BatchSolver::create(
@@ -294,6 +293,7 @@ void SliceSolver::put_back() {
 
 void SliceSolver::close_small_steps(Totals& totals) {
   Pack strain, pressure;
+  const double tolerance = physics::reachable(system_->shape(), tolerance_);
   for (PackState& state : *states_) {
     physics::solve_blocks(state.strain_slope, state.bandage_slope, state.strain_residual,
                           state.pressure_residual, strain, pressure);
@@ -302,7 +302,7 @@ void SliceSolver::close_small_steps(Totals& totals) {
         state.left[i] = std::fabs(pressure[i]);
         state.settled_slope[i] = state.bandage_slope[i];
       }
-      if (std::fabs(pressure[i]) <= tolerance_ * std::fabs(state.pressure[i])) state.open[i] = 0;
+      if (std::fabs(pressure[i]) <= tolerance * std::fabs(state.pressure[i])) state.open[i] = 0;
       state.iterations[i] += state.open[i];
     }
     totals.open += count_open(state);

@@ -25,7 +25,7 @@ namespace {
 constexpr double doubtful_slope = 0.5;
 // A drop is the difference of two pressures unless it is so small a part of these that what Newton's
 // tolerance may leave in them shows, or its error is estimated to be larger.
-constexpr double small_drop = 0.01, error_of_drop = 1e-11;
+constexpr double small_drop = 0.01, error_of_drop = 1e-11, error_of_drop_in_single = 1e-4;
 constexpr int fewest_points_of_drop = 2;
 // Actuation pressures over that at rest: parts of the path between the two states on which so many points,
 // and one and two more, give the mean slope to 1e-12 even if it changes ten times as fast as the pressure.
@@ -144,13 +144,14 @@ void SliceModel::finish_actuated(model::Fidelity fidelity) {
 // into packs of their own.
 void SliceModel::small_drops() {
   for (auto& slices : small_drops_) slices.clear();
+  const double enough = system_.shape().single ? error_of_drop_in_single : error_of_drop;
   each_pack([&](const Block& block, std::size_t k) {
     const SliceOutcomes& outcomes = outcomes_[k];
     for (int i = 0; i < block.segments.count; ++i) {
       const double part = outcomes.actuation_pressure[i] / outcomes.pressure_rest[i];
       const double drop = outcomes.actuation_drop[i];
-      const bool small = drop < small_drop * outcomes.pressure_rest[i] ||
-                         outcomes.error_of_difference[i] > error_of_drop * drop;
+      const bool small =
+          drop < small_drop * outcomes.pressure_rest[i] || outcomes.error_of_difference[i] > enough * drop;
       const bool resolved = part > 0 && part < parts_of_drop.back();
       if (!small || !resolved || !(outcomes.pressure_actuated[i] > 0)) continue;
       const auto range = std::upper_bound(parts_of_drop.begin(), parts_of_drop.end(), part);

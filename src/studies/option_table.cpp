@@ -300,37 +300,6 @@ std::vector<Option> make_table() {
        .doc = "Young's modulus of the neo-Hookean leg.",
        .sweepable = true,
        .set = [](Scene& s, std::size_t, Values v) { s.leg.young_modulus = v[0]; }},
-      {.name = "slice_count",
-       .kind = Kind::count,
-       .components = {{.range = {.low = 1, .high = 100000}}},
-       .default_text = "6",
-       .doc = "Slices a segment.",
-       .sweepable = true,
-       .set = [](Scene& s, std::size_t, Values v) { s.discretisation.slice_count = static_cast<int>(v[0]); }},
-      {.name = "slice_fixed_point_tolerance",
-       .components = {{.range = {.low = 1e-16, .high = 0.1}}},
-       .default_text = "1e-4",
-       .doc = "The fixed point stops once the radius changes by less than this part of the undeformed one.",
-       .sweepable = true,
-       .set = [](Scene& s, std::size_t, Values v) { s.discretisation.fixed_point_tolerance = v[0]; }},
-      {.name = "slice_rule",
-       .kind = Kind::choice,
-       .choices = {"gauss", "midpoint"},
-       .default_text = "gauss",
-       .doc = "Where the slices of a segment sit and what they weigh; midpoint is the paper's.",
-       .set =
-           [](Scene& s, std::size_t, Values v) {
-             s.discretisation.slice_rule = static_cast<model::SliceRule>(static_cast<int>(v[0]));
-           }},
-      {.name = "slice_solver",
-       .kind = Kind::choice,
-       .choices = {"newton", "fixed_point"},
-       .default_text = "newton",
-       .doc = "Newton on all slices together (SNES), or the paper's fixed point.",
-       .set =
-           [](Scene& s, std::size_t, Values v) {
-             s.discretisation.slice_solver = static_cast<model::SliceSolver>(static_cast<int>(v[0]));
-           }},
       {.name = "sliding_count",
        .kind = Kind::count,
        .components = {{.range = {.low = 3, .high = 100000}}},
@@ -347,14 +316,6 @@ std::vector<Option> make_table() {
        .sweepable = true,
        .yields_to = {"bandage_<s>_voltage"},
        .set = [](Scene& s, std::size_t i, Values v) { s.bandage.modules[i].voltage = v[0]; }},
-      {.name = "wall_points",
-       .kind = Kind::count,
-       .components = {{.range = {.low = 1, .high = 128}}},
-       .word = {"auto", 0},
-       .default_text = "auto",
-       .doc = "Gauss points through the wall; 1 is a thin wall, auto takes as many as the wall needs.",
-       .sweepable = true,
-       .set = [](Scene& s, std::size_t, Values v) { s.discretisation.wall_points = static_cast<int>(v[0]); }},
   };
 }
 
@@ -371,6 +332,7 @@ std::span<const Option> option_table() {
   static const std::vector<Option> table = [] {
     std::vector<Option> all = make_table();
     std::ranges::move(program_options(), std::back_inserter(all));
+    std::ranges::move(slice_options(), std::back_inserter(all));
     std::ranges::sort(all, {}, &Option::name);
     return all;
   }();

@@ -20,6 +20,7 @@ MOST_SEGMENTS = 12  # in figures and tables
 PER_CASE = {"case", "wall_time", "rung", "true_error", "segment_time"}  # what is not a swept option
 RESULTS = {"pressure_rest": "pressure at rest (kPa)", "pressure_actuated": "pressure under voltage (kPa)",
            "actuation_drop": "drop by the voltage (kPa)", "volume_change": "volume change"}
+LESS_SOLVED = {"_single": "single precision", "_newton_": "Newton stopped early", "_fixed_point": "fixed point"}
 STYLE = ("body{font:15px/1.5 sans-serif;max-width:62em;margin:2em auto;padding:0 1em}table{border-collapse:collapse}"
          "td,th{padding:.15em .7em;text-align:right;border-bottom:1px solid #ddd}td:first-child,th:first-child"
          "{text-align:left}img{max-width:100%}pre{overflow:auto;background:#f6f6f6;padding:1em}")
@@ -192,23 +193,39 @@ class Report:
                 front.append(i)
         drawing, axes = plt.subplots(figsize=(9, 6))
         axes.loglog(cost[front], error[front], "-", color="0.8", lw=4, label="Pareto front", drawstyle="steps-post")
-        models = [name.split("_")[0].replace("first", "first order") for name in rungs]
+        models = [self.kind(name) for name in rungs]
         for model in dict.fromkeys(model for model, is_shown in zip(models, shown) if is_shown):
             mask = shown & (np.array(models) == model)
             axes.loglog(cost[mask], error[mask], "*" if model == "auto" else "o", ms=11 if model == "auto" else 6,
                         label=f"{model}, true error")
         axes.loglog(cost[shown], estimate[shown], "_", color="0.4", label="estimated error")
         for i in np.flatnonzero(shown):
-            if i in front or models[i] == "auto":
+            if i in front or models[i] in ("auto", *LESS_SOLVED.values()):
                 axes.annotate(rungs[i], (cost[i], error[i]), fontsize=7, xytext=(4, 5), textcoords="offset points",
                               rotation=20)
         axes.set(xlabel="time of a segment (s)", ylabel="relative error")
         axes.grid(alpha=0.3)
         axes.legend()
-        rows = [[name, f"{error[i]:.1e}", f"{estimate[i]:.1e}", f"{unknowns[i]:.0f}", f"{cost[i]:.2e}",
-                 "yes" if i in front else ""] for i, name in enumerate(rungs)]
+        own = np.fmax.reduce(np.where(trusted, self.file["discretisation_error"][:], np.nan), axis=1)
+        rows = [[name, f"{error[i]:.1e}", f"{estimate[i]:.1e}", f"{own[i]:.1e}", f"{unknowns[i]:.0f}", f"{cost[i]:.2e}",
+                 "yes" if i in front else "", self.taken(i) if models[i] == "auto" else ""]
+                for i, name in enumerate(rungs)]
         return figure(drawing, "Error of each rung against the finest, and what it costs") + \
-            table(["rung", "true error", "estimated", "unknowns", "s a segment", "on the front"], rows)
+            table(["rung", "true error", "estimated", "own part", "unknowns", "s a segment", "on the front", "taken by auto"], rows)
+
+    def kind(self, rung):
+        """What the rungs of one colour have in common."""
+        for word, kind in LESS_SOLVED.items():
+            if word in rung:
+                return kind
+        return rung.split("_")[0].replace("first", "first order")
+
+    def taken(self, case):
+        """The models and resolutions of the segments that were solved, each once."""
+        words, names = words_of(self.file["fidelity"]), ("fidelity", "slices_used", "wall_points_used", "planned_cost")
+        rows = zip(*(self.file[name][case] for name in names))
+        return ", ".join(dict.fromkeys(f"{words[model]} {slices} x {points}" if slices else words[model]
+                                       for model, slices, points, planned in rows if np.isfinite(planned)))
 
     def origin(self):
         rows = [(name, self.file.attrs[name]) for name in ("command", "created", "ranks", "gaiter_version",

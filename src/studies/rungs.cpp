@@ -2,8 +2,11 @@
 #include "gaiter/studies/rungs.hpp"
 
 #include <fmt/format.h>
+#include <petscsys.h>
 
 #include <algorithm>
+
+#include "gaiter/petsc/check.hpp"
 
 namespace gaiter::studies {
 
@@ -12,6 +15,18 @@ namespace {
 using model::Fidelity, model::Scene, model::SliceRule, model::SliceSolver;
 
 constexpr int finest_slices = 64, finest_sliding_slices = 192, finest_refinement = 3;
+
+// One that is given holds for all rungs.
+bool newton_tolerance_given() {
+  PetscBool given = PETSC_FALSE;
+  petsc::check(PetscOptionsHasName(nullptr, "slice_", "-snes_rtol", &given));
+  return given;
+}
+
+std::string short_number(double value) {
+  const std::string power = fmt::format("{:.0e}", value);
+  return std::stod(power) == value ? power : fmt::format("{:g}", value);
+}
 
 class Ladder {
  public:
@@ -26,8 +41,11 @@ class Ladder {
     slices();
     if (base_.goal.up_to != Fidelity::slice) sliding();
     if (base_.goal.up_to == Fidelity::axisym && !rigid_) finite_elements();
-    for (const double accuracy : {1e-1, 1e-2, 1e-3, 1e-4, 1e-5}) {
-      Scene& scene = add(fmt::format("auto_{:.0e}", accuracy), Fidelity::automatic);
+    std::vector<double> accuracies{1e-1, 1e-2, 1e-3, 1e-4, 1e-5};
+    if (std::ranges::find(accuracies, base_.goal.accuracy) == accuracies.end())
+      accuracies.push_back(base_.goal.accuracy);
+    for (const double accuracy : accuracies) {
+      Scene& scene = add(fmt::format("auto_{}", short_number(accuracy)), Fidelity::automatic);
       scene.goal.accuracy = accuracy;
       if (rigid_ && scene.goal.up_to == Fidelity::axisym) scene.goal.up_to = Fidelity::sliding;
     }
@@ -54,8 +72,21 @@ class Ladder {
       scene.discretisation.slice_rule = SliceRule::midpoint;
       scene.discretisation.slice_count = count;
     }
-    if (!rigid_)
-      add("slices_6_fixed_point", Fidelity::slice).discretisation.slice_solver = SliceSolver::fixed_point;
+    if (!rigid_) cheaper_slices();
+  }
+
+  // What spares digits that few need.
+  void cheaper_slices() {
+    for (const int count : {2, 6}) {
+      Scene& scene = add(fmt::format("slices_{}_single", count), Fidelity::slice);
+      scene.discretisation.slice_count = count;
+      scene.discretisation.slice_precision = model::SlicePrecision::in_single;
+    }
+    for (const double tolerance : {1e-1, 1e-3, 1e-6})
+      if (!newton_tolerance_given())
+        add(fmt::format("slices_6_newton_{}", short_number(tolerance)), Fidelity::slice)
+            .discretisation.newton_tolerance = tolerance;
+    add("slices_6_fixed_point", Fidelity::slice).discretisation.slice_solver = SliceSolver::fixed_point;
   }
 
   void sliding() {

@@ -75,17 +75,71 @@ double segment_time(MPI_Comm comm, const model::Scene& scene, double seconds) {
   return shortest * petsc::size(comm) / (static_cast<double>(times) * solved);
 }
 
-double largest_estimate(const RungResult& rung) {
-  double largest = none;
+// Of all segments.
+double largest(const RungResult& rung, double model::SegmentResult::*error) {
+  double most = none;
   for (const model::SegmentResult& row : rung.rows)
-    if (model::trustworthy(row.status)) largest = std::fmax(largest, row.error_estimate);
-  return largest;
+    if (model::trustworthy(row.status)) most = std::fmax(most, row.*error);
+  return most;
 }
 
 double mean_unknowns(const RungResult& rung) {
   double sum = 0;
   for (const model::SegmentResult& row : rung.rows) sum += row.unknowns;
   return sum / static_cast<double>(rung.rows.size());
+}
+
+bool is_auto(const RungResult& rung) {
+  return rung.name.starts_with("auto_");
+}
+
+// What auto took, the segments in turn.
+std::string taken_by(const RungResult& rung) {
+  std::string text, last;
+  for (const model::SegmentResult& row : rung.rows) {
+    if (row.status == model::Status::not_wanted) continue;
+    std::string taken(archive::word(row.fidelity));
+    taken += row.slice_count > 0 ? fmt::format(" {} x {}", row.slice_count, row.wall_points)
+                                 : fmt::format(" {}", row.unknowns);
+    if (taken != last) text += (text.empty() ? "" : ", ") + taken;
+    last = taken;
+  }
+  return text;
+}
+
+// Whether auto would call a segment solved like this the same: it leaves the points through the wall open,
+// and the slices where these are no system.
+bool same_model(const RungResult& rung, const model::SegmentResult& row, const model::SegmentResult& taken) {
+  if (row.fidelity != taken.fidelity) return false;
+  switch (row.fidelity) {
+    case model::Fidelity::slice:
+      return row.slice_count == taken.slice_count && rung.name == fmt::format("slices_{}", row.slice_count);
+    case model::Fidelity::sliding:
+      return row.slice_count == taken.slice_count;
+    case model::Fidelity::axisym:
+      return row.unknowns == taken.unknowns && rung.name.starts_with("axisym_") &&
+             rung.name.find("_r") == std::string::npos;
+    default:
+      return true;
+  }
+}
+
+// The auto rungs that took this one for some segment.
+std::string takers_of(const RungResult& rung, const std::vector<RungResult>& rungs) {
+  std::string text;
+  for (const RungResult& other : rungs) {
+    if (!is_auto(other) || is_auto(rung) || &rung == &rungs.back()) continue;
+    std::size_t taken = 0, wanted = 0;
+    for (std::size_t i = 0; i < rung.rows.size(); ++i) {
+      if (other.rows[i].status == model::Status::not_wanted) continue;
+      ++wanted;
+      taken += same_model(rung, rung.rows[i], other.rows[i]);
+    }
+    if (taken > 0)
+      text += fmt::format("{}{}{}", text.empty() ? "< " : ", ", other.name,
+                          taken < wanted ? fmt::format(" ({} of {})", taken, wanted) : "");
+  }
+  return text;
 }
 
 // Whether no rung that takes less time is as good.
@@ -114,25 +168,24 @@ std::vector<RungResult> climb(MPI_Comm comm, const std::vector<Rung>& rungs) {
 }
 
 std::string tradeoff_table(const model::Scene& scene, const std::vector<RungResult>& rungs) {
-  std::string text = fmt::format("{:<22}{:>12}{:>12}{:>10}{:>14}{:>12}{:>7}  {}\n", "rung", "true error",
-                                 "estimated", "unknowns", "s a segment", "speed", "front", "taken");
+  std::string text =
+      fmt::format("{:<22}{:>12}{:>12}{:>10}{:>10}{:>14}{:>12}{:>7}  {}\n", "rung", "true error", "estimated",
+                  "own part", "unknowns", "s a segment", "speed", "front", "taken");
   const RungResult& finest = rungs.back();
   for (const RungResult& rung : rungs) {
-    std::string taken;  // by auto, the models of the segments
-    if (rung.name.starts_with("auto"))
-      for (std::size_t i = 0; i < rung.rows.size(); ++i) {
-        const std::string_view word = archive::word(rung.rows[i].fidelity);
-        if (i == 0 || rung.rows[i].fidelity != rung.rows[i - 1].fidelity)
-          taken += fmt::format("{}{}", i == 0 ? "" : ", ", word);
-      }
-    text += fmt::format("{:<22}{:>12}{:>12}{:>10.0f}{:>14.2e}{:>12.3g}{:>7}  {}\n", rung.name,
-                        &rung == &finest ? "-" : number(rung.true_error), number(largest_estimate(rung)),
+    const std::string taken = is_auto(rung) ? taken_by(rung) : takers_of(rung, rungs);
+    text += fmt::format("{:<22}{:>12}{:>12}{:>10}{:>10.0f}{:>14.2e}{:>12.3g}{:>7}  {}\n", rung.name,
+                        &rung == &finest ? "-" : number(rung.true_error),
+                        number(largest(rung, &model::SegmentResult::error_estimate)),
+                        number(largest(rung, &model::SegmentResult::discretisation_error)),
                         mean_unknowns(rung), rung.segment_time, finest.segment_time / rung.segment_time,
                         on_the_front(rung, rungs) ? "*" : "", taken);
   }
   text += fmt::format(
       "true error: the largest of any segment and wanted output against {}; estimated: error_estimate, the "
-      "same\nfor the rung by itself. * no cheaper rung is as good.\n",
+      "same\nfor the rung by itself, finer models included; own part: of the discretisation and the "
+      "algorithm. * no "
+      "cheaper\nrung is as good. < taken by auto, with points through the wall of its own.\n",
       archive::word(finest.rows[0].fidelity));
   for (std::size_t i = 0; i < finest.rows.size(); ++i)
     if (!model::trustworthy(finest.rows[i].status))

@@ -13,6 +13,7 @@ namespace gaiter::model {
 enum class Fidelity { rigid, slice, sliding, axisym, first_order, automatic };
 enum class SliceRule { gauss, midpoint };
 enum class SliceSolver { newton, fixed_point };
+enum class SlicePrecision { in_double, in_single };  // of the laws' exponentials and logarithms
 enum class ContactAxial { free, held };              // along the leg: lubricated, or as laid on
 
 // How finely, and by which algorithm, the slice model is solved.
@@ -21,7 +22,10 @@ struct Discretisation {
   int slice_count = 6;  // a segment
   int wall_points = 0;  // Gauss points through the wall; 0: as many as the wall needs
   SliceSolver slice_solver = SliceSolver::newton;
-  int sliding_count = 24;               // slices of a sliding segment, rounded up to a multiple of three
+  SlicePrecision slice_precision = SlicePrecision::in_double;
+  double newton_tolerance =
+      1e-12;               // relative, of a slice's pressure, unless -slice_snes_rtol says another [1]
+  int sliding_count = 24;  // slices of a sliding segment, rounded up to a multiple of three
   double fixed_point_tolerance = 1e-4;  // change of r over the undeformed radius at which the paper stops [1]
 };
 

@@ -50,6 +50,9 @@ void evaluate_open(const SliceShape& shape, const Pack* rows, PackState& state);
 void solve_blocks(const Pack& strain_slope, const Pack& bandage_slope, const Pack& strain_residual,
                   const Pack& pressure_residual, Pack& strain_direction, Pack& pressure_direction);
 
+// The smallest relative error to which slices can close, where `tolerance` is asked for.
+double reachable(const SliceShape& shape, double tolerance);
+
 // One damped Newton step of each open slice, P - direction, and the residual there. Far from the solution,
 // where bandage and leg differ by more than a factor of four, Newton's step for ln P = ln P_t is taken if it
 // is the larger, though not past the middle of the bracket. A slice closes when its next step is predicted to
@@ -70,7 +73,8 @@ struct PressureError {
 
 // The equation amplifies rounding where the bandage is nearly slack (the gap cancels), where the voltage
 // takes most of its pressure, and near a limit point (f' is small); the relative error of the quadrature
-// through the wall, `passive_wall_error`, in the same way (SegmentConstants).
+// through the wall, `passive_wall_error`, in the same way (SegmentConstants). In single precision the leg's
+// and the bandage's exponentials and logarithms are rounded, but not the gap: `slope` amplifies these alone.
 void pressure_error(const SliceShape& shape, const Pack* rows, const PackState& state, const Pack& wall_error,
                     const Pack& passive_wall_error, PressureError& error);
 

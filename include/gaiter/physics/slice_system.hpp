@@ -19,6 +19,7 @@ struct SliceShape {
   int ogden_terms = 1;
   int layers = 0;  // 0: no voltage, the actuation is left out
   model::LegMaterial material = model::LegMaterial::compliance;
+  bool single = false;  // exponentials and logarithms of the laws in single precision
 
   // Rows that are always there; the variable ones follow.
   enum Row {
@@ -83,7 +84,8 @@ class SliceSystem {
   // With the voltage on, or off as if there were none (the rest state).
   void energise(bool on) { shape_.layers = on ? layers_ : 0; }
 
-  // A system of `packs() == 1` whose slices all have the constants of slice `index` of this one.
+  // A system of `packs() == 1` whose slices all have the constants of slice `index` of this one, in double
+  // precision: branches are told apart by the last digits.
   SliceSystem replicate(std::size_t index) const;
 
   // Constants of up to 64 slices of several packs to the rows of one; the spare places repeat the last slice.

@@ -16,6 +16,8 @@ __attribute__((simd("notinbranch"), const)) double expm1(double) noexcept;
 __attribute__((simd("notinbranch"), const)) double log1p(double) noexcept;
 __attribute__((simd("notinbranch"), const)) double log(double) noexcept;
 __attribute__((simd("notinbranch"), const)) double exp(double) noexcept;
+__attribute__((simd("notinbranch"), const)) float expm1f(float) noexcept;
+__attribute__((simd("notinbranch"), const)) float log1pf(float) noexcept;
 }
 #else
 #define GAITER_MULTIVERSION

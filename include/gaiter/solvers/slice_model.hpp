@@ -78,7 +78,7 @@ class SliceModel {
   void arrange();
   void lay_slices(Block& block);
   void set_segments(std::span<const std::size_t> tasks, physics::SegmentPack& segments);
-  void prepare_solver(model::SliceSolver algorithm, double tolerance);
+  void prepare_solver(model::SliceSolver algorithm, double fixed_point_tolerance, double newton_tolerance);
   void rigid_pressures();
   void solve_rigid();
   void solve_first_order();
@@ -109,7 +109,7 @@ class SliceModel {
   std::map<int, physics::Quadrature> wall_rules_;
   std::unique_ptr<SliceSolver> solver_;
   model::SliceSolver algorithm_ = model::SliceSolver::newton;  // of the solver
-  double fixed_point_tolerance_ = 0;                           // likewise
+  double fixed_point_tolerance_ = 0, newton_tolerance_ = 0;    // likewise
 
   // Of the batch at hand.
   std::span<const SegmentTask> tasks_;

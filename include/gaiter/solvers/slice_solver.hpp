@@ -27,7 +27,8 @@ struct SliceReport {
 class SliceSolver : public BatchSolver {
  public:
   // @note Collective. `packs`: most packs of 64 slices that this rank will ever hand to solve().
-  SliceSolver(MPI_Comm comm, std::size_t packs, model::SliceSolver algorithm, double fixed_point_tolerance);
+  SliceSolver(MPI_Comm comm, std::size_t packs, model::SliceSolver algorithm, double fixed_point_tolerance,
+              double newton_tolerance = model::Discretisation{}.newton_tolerance);
 
   std::size_t packs() const { return packs_; }
 
@@ -60,7 +61,7 @@ class SliceSolver : public BatchSolver {
     std::size_t count = 0;          // without the spare places of the last pack
   };
 
-  PetscErrorCode create(MPI_Comm comm);
+  PetscErrorCode create(MPI_Comm comm, double newton_tolerance);
   PetscErrorCode create_matrix(MPI_Comm comm);
   PetscErrorCode run(const Start& start, FirstResidual first, SliceReport& report);
   void gather_open();

@@ -88,6 +88,9 @@ struct Option {
 // Those that belong to the program and not to a scene, in any order.
 std::vector<Option> program_options();
 
+// Those of the slices and the points through the wall, in any order.
+std::vector<Option> slice_options();
+
 // All options, sorted by name. PETSc's own options (slice_snes_..., slice_ksp_...) are not in it.
 std::span<const Option> option_table();
 
