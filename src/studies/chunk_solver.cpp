@@ -94,17 +94,15 @@ void ChunkSolver::solve_batch(std::size_t first, std::size_t designs) {
     for (const solvers::SegmentTask& task : tasks_) chunk_.equilibria += equilibria_of(task);
   }
   const double share = (MPI_Wtime() - start) / static_cast<double>(designs);
+  const model::SegmentResult invalid = model::without_numbers(
+      model::Status::invalid, fidelity == model::Fidelity::automatic ? model::Fidelity::slice : fidelity);
   std::size_t next = 0;
   for (std::size_t k = 0; k < designs; ++k) {
     bool failed = false;
     for (std::size_t s = 0; s < segments; ++s) {
-      const model::SegmentResult result =
-          sound_[k] ? results[next++]
-                    : model::without_numbers(model::Status::invalid, fidelity == model::Fidelity::automatic
-                                                                         ? model::Fidelity::slice
-                                                                         : fidelity);
-      failed = failed || !model::trustworthy(result.status);
-      chunk_.rows[(first + k) * segments + s] = result;
+      model::SegmentResult& row = chunk_.rows[(first + k) * segments + s];
+      row = sound_[k] ? results[next++] : invalid;
+      failed = failed || !model::trustworthy(row.status);
     }
     chunk_.failed += failed;
     chunk_.wall_times[first + k] = share;
