@@ -17,28 +17,68 @@ namespace gaiter::archive {
 namespace {
 
 constexpr char mark[8] = {'g', 'a', 'i', 't', 'e', 'r', ' ', '2'};
+// Variables whose values are taken out of the rows together, and of so many cases at a time: what a row holds
+// is then still at hand for the next variable.
+constexpr std::size_t variables_at_once = 8, cases_at_once = 64;
+
+// Bytes of a variable's values in a whole chunk.
+std::size_t bytes_in_chunk(const FileVariable& variable, const CaseRange& range, std::size_t segments) {
+  return range.chunk * (variable.per_segment ? segments : 1) * bytes_of(variable.stored);
+}
+
+// The values of some variables, one after the other, each for a whole chunk; cases that the range has not are
+// 0.
+void gather(std::span<const FileVariable> variables, const CaseRange& range, std::size_t segments,
+            const CaseResults& results, std::vector<std::byte>& values) {
+  std::vector<std::size_t> begin{0};
+  for (const FileVariable& variable : variables) {
+    begin.push_back(begin.back() + bytes_in_chunk(variable, range, segments));
+  }
+  if (values.size() < begin.back()) {
+    values.resize(begin.back());
+  }
+  for (std::size_t i = 0; i < variables.size(); ++i) {
+    const std::size_t filled = (begin[i + 1] - begin[i]) / range.chunk * range.count;
+    std::fill(values.data() + begin[i] + filled, values.data() + begin[i + 1], std::byte{0});
+    if (!variables[i].per_segment) {
+      gather(variables[i], results, values.data() + begin[i]);
+    }
+  }
+  for (std::size_t first = 0; first < range.count; first += cases_at_once) {
+    const std::size_t cases = std::min(cases_at_once, range.count - first);
+    const CaseResults some{results.rows.subspan(first * segments, cases * segments), {}, {}};
+    for (std::size_t i = 0; i < variables.size(); ++i) {
+      if (variables[i].per_segment) {
+        const std::size_t before = (begin[i + 1] - begin[i]) / range.chunk * first;
+        gather(variables[i], some, values.data() + begin[i] + before);
+      }
+    }
+  }
+}
 
 }  // namespace
 
 FileOfCases::FileOfCases(const Layout& layout, const Provenance& provenance, const CaseRange& range,
                          const CaseResults& results, bool newest_format, Workspace& workspace)
-    : file_(newest_format, workspace.file_bytes) {
+    : file_(newest_format, workspace.file_bytes, &workspace.spare) {
   const QuietErrors quiet;
   require_complete(layout, range.count, results);
   {
     const std::vector<Id> made = fill_file(file_.get(), layout, provenance, range);
     const std::vector<FileVariable> variables = variables_of(layout);
-    std::vector<std::byte>& values = workspace.values;
+    const std::size_t segments = layout.segments.size();
+    std::size_t begin = 0;
     for (std::size_t i = 0; i < variables.size(); ++i) {
-      const std::size_t item = bytes_of(variables[i].stored);
-      const std::size_t rows = variables[i].per_segment ? layout.segments.size() : 1;
-      const std::size_t filled = range.count * rows * item, all = range.chunk * rows * item;
-      if (values.size() < all) {
-        values.resize(all);
+      if (i % variables_at_once == 0) {
+        const auto some = std::span(variables).subspan(i);
+        gather(some.first(std::min(variables_at_once, some.size())), range, segments, results,
+               workspace.values);
+        begin = 0;
       }
-      std::fill_n(values.begin() + static_cast<std::ptrdiff_t>(filled), all - filled, std::byte{0});
-      gather(variables[i], results, values.data());
-      put_chunk(made[i].get(), 0, workspace.compressor.compress(std::span(values).first(all), item));
+      const std::size_t bytes = bytes_in_chunk(variables[i], range, segments);
+      const auto values = std::span(workspace.values).subspan(begin, bytes);
+      begin += bytes;
+      put_chunk(made[i].get(), 0, workspace.compressor.compress(values, bytes_of(variables[i].stored)));
       places_.push_back(place_of_first_chunk(made[i].get()));
     }
   }

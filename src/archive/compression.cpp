@@ -10,6 +10,7 @@
 #include <cstring>
 
 #include "gaiter/base/error.hpp"
+#include "gaiter/base/multiversion.hpp"
 
 namespace gaiter::archive {
 namespace {
@@ -76,11 +77,14 @@ double repetition(std::span<const std::byte> plane) {
   return static_cast<double>(repeated) / static_cast<double>(windows * (window - 3));
 }
 
-enum class Method { store, count_bytes, search };
+enum class Method { store, repeat, count_bytes, search };
 
 Method method_for(std::span<const std::byte> plane) {
   if (plane.size() < 4096) {
     return Method::search;
+  }
+  if (std::memcmp(plane.data(), plane.data() + 1, plane.size() - 1) == 0) {
+    return Method::repeat;
   }
   // Of noise it is one pair in 256. Codes of unequal length are not worth their time before there are very
   // many more: on the second byte of a computed number they save 6 % of an archive and take a seventh of its
@@ -106,6 +110,47 @@ std::byte* put_stored(std::span<const std::byte> bytes, bool last, std::byte* ou
     out += length;
     bytes = bytes.subspan(length);
   } while (!bytes.empty());
+  return out;
+}
+
+// A block of a plane that is one byte over and over, in the codes of fixed length that RFC 1951 gives
+// (3.2.6): the byte, then copies of the one before, 258 or 10 at a time. An empty stored block after it ends
+// at a whole byte.
+std::byte* put_repeated(std::byte value, std::size_t count, std::byte* out) {
+  std::uint64_t bits = 0;
+  unsigned used = 0;
+  const auto put = [&](std::uint32_t code, unsigned length) {  // first bit lowest
+    bits |= std::uint64_t{code} << used;
+    for (used += length; used >= 8; used -= 8, bits >>= 8) {
+      *out++ = static_cast<std::byte>(bits);
+    }
+  };
+  // Codes stand with their highest bit first.
+  const auto literal = std::to_integer<std::uint32_t>(value);
+  const unsigned length = literal < 144 ? 8 : 9;
+  std::uint32_t byte_code = 0;
+  for (std::uint32_t code = literal < 144 ? 0x30 + literal : 0x190 + literal - 144, i = 0; i < length; ++i) {
+    byte_code |= (code >> i & 1) << (length - 1 - i);
+  }
+  put(0b010, 3);
+  put(byte_code, length);
+  for (--count; count >= 258; count -= 258) {
+    put(0b10100011, 8 + 5);  // the length's code and, all zero, that of the distance 1
+  }
+  for (; count >= 10; count -= 10) {
+    put(0b0001000, 7 + 5);
+  }
+  for (; count > 0; --count) {
+    put(byte_code, length);
+  }
+  put(0, 7);  // end of block
+  put(0, 3);
+  if (used > 0) {
+    *out++ = static_cast<std::byte>(bits);
+  }
+  for (const unsigned end : {0x00, 0x00, 0xFF, 0xFF}) {
+    *out++ = static_cast<std::byte>(end);
+  }
   return out;
 }
 
@@ -137,8 +182,9 @@ void shuffle(std::span<const std::byte> values, std::size_t item_bytes, std::byt
   }
 }
 
+GAITER_MULTIVERSION
 std::uint32_t adler32(std::uint32_t before, std::span<const std::byte> bytes) {
-  constexpr std::size_t lanes = 16, rows = 256;  // as many as the sums have room for
+  constexpr std::size_t lanes = 64, rows = 256;  // as many as the sums have room for
   constexpr std::uint64_t modulus = 65521;
   std::uint64_t sum = before & 0xFFFF, sum_of_sums = before >> 16;
   while (bytes.size() >= lanes) {
@@ -223,8 +269,11 @@ std::span<const std::byte> Compressor::compress(std::span<const std::byte> value
     const Method next = last ? Method::store : method_for(bytes_of(j + 1));
     if (method == Method::store) {
       out = put_stored(bytes_of(j), false, out);
+    } else if (method == Method::repeat) {
+      out = put_repeated(bytes_of(j)[0], plane, out);
     } else {
-      out += zlib_->append(bytes_of(j), method == Method::search, next == Method::store, out,
+      const bool end_of_run = next == Method::store || next == Method::repeat;
+      out += zlib_->append(bytes_of(j), method == Method::search, end_of_run, out,
                            static_cast<std::size_t>(end - out));
     }
     method = next;

@@ -95,18 +95,16 @@ void ChunkSolver::solve_batch(std::size_t first, std::size_t designs) {
     for (const solvers::SegmentTask& task : tasks_) chunk_.equilibria += equilibria_of(task);
   }
   const double share = (MPI_Wtime() - start) / static_cast<double>(designs);
+  const model::Fidelity named = fidelity == model::Fidelity::automatic ? model::Fidelity::slice : fidelity;
+  const model::SegmentResult invalid = model::without_numbers(model::Status::invalid, named),
+                             not_wanted = model::without_numbers(model::Status::not_wanted, named);
   std::size_t next = 0;
   for (std::size_t k = 0; k < designs; ++k) {
     bool failed = false;
     for (std::size_t s = 0; s < segments; ++s) {
-      const bool solved = sound_[k] && scenes_[k].wants(s);
-      const model::SegmentResult result =
-          solved ? results[next++]
-                 : model::without_numbers(
-                       sound_[k] ? model::Status::not_wanted : model::Status::invalid,
-                       fidelity == model::Fidelity::automatic ? model::Fidelity::slice : fidelity);
-      failed = failed || model::failed(result.status);
-      chunk_.rows[(first + k) * segments + s] = result;
+      model::SegmentResult& row = chunk_.rows[(first + k) * segments + s];
+      row = !sound_[k] ? invalid : scenes_[k].wants(s) ? results[next++] : not_wanted;
+      failed = failed || model::failed(row.status);
     }
     chunk_.failed += failed;
     chunk_.wall_times[first + k] = share;

@@ -20,6 +20,7 @@ namespace gaiter::archive {
 struct Workspace {
   Compressor compressor;
   std::vector<std::byte> values;
+  SpareMemory spare;
   std::size_t file_bytes = std::size_t{1} << 20;  // of the largest file so far, and a little more
 };
 

@@ -3,14 +3,13 @@
 
 #include <cmath>
 
-// Loops over a pack of slices are written plainly and vectorised by the compiler. GAITER_MULTIVERSION
-// compiles such a function for several instruction sets; the best one is picked when the program is loaded.
-// The C library's vector exponentials and logarithms (1 to 2 ulp) are declared here because its own headers
-// offer them only under -ffast-math, which would allow the reordering and the loss of infinities that the
-// laws rely on.
+#include "gaiter/base/multiversion.hpp"
+
+// Loops over a pack of slices are written plainly and vectorised by the compiler. The C library's vector
+// exponentials and logarithms (1 to 2 ulp) are declared here because its own headers offer them only under
+// -ffast-math, which would allow the reordering and the loss of infinities that the laws rely on.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && defined(__GLIBC__) && \
     (__GLIBC__ > 2 || (__GLIBC__ == 2 && __GLIBC_MINOR__ >= 35))
-#define GAITER_MULTIVERSION __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
 extern "C" {
 __attribute__((simd("notinbranch"), const)) double expm1(double) noexcept;
 __attribute__((simd("notinbranch"), const)) double log1p(double) noexcept;
@@ -19,8 +18,6 @@ __attribute__((simd("notinbranch"), const)) double exp(double) noexcept;
 __attribute__((simd("notinbranch"), const)) float expm1f(float) noexcept;
 __attribute__((simd("notinbranch"), const)) float log1pf(float) noexcept;
 }
-#else
-#define GAITER_MULTIVERSION
 #endif
 
 namespace gaiter::physics {
