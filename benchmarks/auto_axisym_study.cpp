@@ -139,7 +139,7 @@ int main(int argc, char** argv) {
       for (const Rung& rung : one.rungs)
         if (rung.error <= tolerance) cheapest = std::min(cheapest, rung.cost);
       const double cost =
-          found.fidelity == Fidelity::axisym ? spent : model.plans()[0].cost + solvers::planning_cost;
+          found.fidelity == Fidelity::axisym ? spent : model.plans()[0].cost;
       ratios.push_back(cost / cheapest);
       if (error > tolerance)
         std::printf("  stretch %.3f, mu %.2g Pa, fidelity %d, error %.2e, told %.2e, status %d\n",

@@ -62,7 +62,7 @@ std::string plan_text(const Request& request, const Designs& designs) {
     for (std::size_t i = 0; i < scene.leg.segments.size(); ++i) {
       const SlicePlan plan = solvers::plan_segment(scene, i);
       ++shares[plan.fidelity].segments;
-      shares[plan.fidelity].cost += plan.cost + solvers::planning_cost;
+      shares[plan.fidelity].cost += plan.cost;
     }
   }
   std::string text;

@@ -29,7 +29,7 @@ struct SlicePlan {
   double change_beyond = 0;  // by the models beyond this one, allowed or not; NaN: not known
   double tolerance = 0;      // of the discretisation
   double factor = 1;         // errors of the wanted outputs over those of the pressures
-  double cost = 0;           // predicted [s]
+  double cost = 0;           // predicted, of planning and of all solves so far [s]
   bool actuated = true;      // false: the state under voltage is not wanted
 };
 
@@ -117,6 +117,7 @@ class SliceModel {
   std::vector<physics::SliceOutcomes> outcomes_;
   std::vector<physics::Pack> rigid_pressure_, rest_pressure_;
   std::vector<physics::Pack> radii_;  // of the leg at each slice
+  std::vector<int> places_;           // in use in each pack
   std::vector<double> height_error_;  // of each task
   std::vector<std::size_t> unclear_;  // tasks whose pressures do not tell that error
   physics::SliceSystem check_;        // their slices at more heights
