@@ -5,12 +5,14 @@
 // planning and repeated solves included, over that of the cheapest rung that would have done, found by
 // hindsight among rigid, first order and slices with 1 to 64 points over the height and 1 to 12 through the
 // wall; measured seconds of both; and how the true error compares with the estimated one. Costs are those of
-// plan_cost, whose fit to measured times is printed first. Usage: auto_study [-scenes 2000]
+// plan_cost, whose fit to measured times is printed first.
+// Usage: auto_study [-scenes 2000] [-skip 0] [-repeats 10] [-tell TOL]
 #include <petscsys.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <map>
+#include <tuple>
 
 #include "auto_study.hpp"
 #include "gaiter/petsc/check.hpp"
@@ -33,14 +35,24 @@ std::vector<model::SegmentResult> solve(const std::vector<model::Scene>& scenes,
   static solvers::SliceModel model(PETSC_COMM_SELF);
   std::vector<model::SegmentResult> results(scenes.size());
   const double start = processor_seconds();
-  std::map<std::pair<Fidelity, int>, std::vector<std::size_t>> groups;
-  for (std::size_t i = 0; i < scenes.size(); ++i)
-    groups[{plans[i].fidelity, plans[i].wall_points}].push_back(i);
-  for (const auto& [key, chosen] : groups) {
-    std::vector<SegmentTask> tasks;
-    for (const std::size_t i : chosen) tasks.push_back({&scenes[i], 0, &plans[i]});
-    const auto found = model.solve(tasks);
-    for (std::size_t k = 0; k < chosen.size(); ++k) results[chosen[k]] = found[k];
+  // In packs as full and batches as large as AutoModel's.
+  std::map<Fidelity, std::vector<std::size_t>> groups;
+  for (std::size_t i = 0; i < scenes.size(); ++i) groups[plans[i].fidelity].push_back(i);
+  for (auto& [fidelity, chosen] : groups) {
+    const auto key = [&](std::size_t i) {
+      return std::tuple(plans[i].cuts.size(), plans[i].slice_count, plans[i].wall_points, i);
+    };
+    std::sort(chosen.begin(), chosen.end(), [&](std::size_t a, std::size_t b) { return key(a) < key(b); });
+    for (std::size_t first = 0, end = 0; first < chosen.size(); first = end) {
+      std::vector<SegmentTask> tasks;
+      for (std::size_t held = 0; end < chosen.size() && held < 2048; ++end) {
+        const SlicePlan& plan = plans[chosen[end]];
+        held += plan.slice_count * (1 + plan.cuts.size());
+        tasks.push_back({&scenes[chosen[end]], 0, &plan});
+      }
+      const auto found = model.solve(tasks);
+      for (std::size_t k = first; k < end; ++k) results[chosen[k]] = found[k - first];
+    }
   }
   if (seconds) *seconds = processor_seconds() - start;
   return results;
@@ -70,7 +82,7 @@ struct Rung {
 
 int main(int argc, char** argv) {
   petsc::Session session(std::vector<std::string>(argv + 1, argv + argc));
-  PetscInt count = 2000, skip = 0, repeats = 3;
+  PetscInt count = 2000, skip = 0, repeats = 10;
   petsc::check(PetscOptionsGetInt(nullptr, nullptr, "-scenes", &count, nullptr));
   petsc::check(PetscOptionsGetInt(nullptr, nullptr, "-skip", &skip, nullptr));
   petsc::check(PetscOptionsGetInt(nullptr, nullptr, "-repeats", &repeats, nullptr));
@@ -94,28 +106,41 @@ int main(int argc, char** argv) {
   }
   std::printf("%zu scenes; statuses of the truth:", size);
   for (const auto& [status, number] : statuses) std::printf(" %d: %d", status, number);
-  std::printf("\n\nmeasured over predicted time of a rung\n");
+  std::printf("\n\nmeasured over predicted time of a rung, scenes in contact from end to end\n");
 
   std::vector<Rung> rungs;
   for (Fidelity fidelity : {Fidelity::rigid, Fidelity::first_order, Fidelity::slice})
     for (int n : {1, 2, 3, 4, 5, 6, 8, 12, 16, 24, 32, 64})
       for (int q : {1, 2, 3, 4, 6, 8, 12}) {
         Rung rung{{fidelity, n, q, {}}, {}, {}};
-        double seconds = 0, predicted = 0;
+        double seconds = 0;
         std::vector<SlicePlan> plans(size, rung.plan);
         for (std::size_t i = 0; i < size; ++i) plans[i].cuts = n >= 4 ? exact[i].cuts : std::vector<double>{};
-        const auto found = solve(scenes, plans, &seconds);
+        const auto found = solve(scenes, plans);
         for (std::size_t i = 0; i < size; ++i) {
           rung.error.push_back(error_of(found[i], truth[i]));
           rung.cost.push_back(solvers::plan_cost(scenes[i], 0, plans[i]));
-          predicted += rung.cost.back();
         }
-        if ((n == 1 || n == 4 || n == 16) && (q == 1 || q == 4))
+        if ((n == 1 || n == 4 || n == 12) && (q == 1 || q == 4)) {
+          // Where the bandage leaves the leg, its own equilibrium is looked for, which no fit has.
+          std::vector<model::Scene> touching;
+          double expected = 0;
+          for (std::size_t i = 0; i < size; ++i)
+            if (truth[i].status == model::Status::contact) {
+              touching.push_back(scenes[i]);
+              expected += rung.cost[i];
+            }
+          double least = 1e300;
+          for (int repeat = 0; repeat < repeats; ++repeat) {
+            (void)solve(touching, std::vector<SlicePlan>(touching.size(), rung.plan), &seconds);
+            least = std::min(least, seconds);
+          }
           std::printf("  %-11s %3d x %2d  %6.2f us, %5.2f of predicted\n",
                       fidelity == Fidelity::rigid   ? "rigid"
                       : fidelity == Fidelity::slice ? "slice"
                                                     : "first order",
-                      n, q, 1e6 * seconds / static_cast<double>(size), seconds / predicted);
+                      n, q, 1e6 * least / static_cast<double>(touching.size()), least / expected);
+        }
         rungs.push_back(std::move(rung));
       }
 
@@ -145,18 +170,18 @@ int main(int argc, char** argv) {
           if (best[i].slice_count >= 4) best[i].cuts = exact[i].cuts;
         }
     }
-    // In turn, so that all see the same machine.
-    double seconds = 0, planning = 0, hindsight = 0;
+    // In turn, so that all see the same machine; the least of each, for others use it too.
+    double seconds = 1e300, planning = 1e300, hindsight = 1e300;
     for (int repeat = 0; repeat < repeats; ++repeat) {
       const double start = processor_seconds();
       found = model.solve(tasks);
       const double solved = processor_seconds();
       solvers::plan_segments(tasks, plans);
-      planning += (processor_seconds() - solved) / repeats;
-      seconds += (solved - start) / repeats;
+      planning = std::min(planning, processor_seconds() - solved);
+      seconds = std::min(seconds, solved - start);
       double once = 0;
       (void)solve(asked, best, &once);
-      hindsight += once / repeats;
+      hindsight = std::min(hindsight, once);
     }
     std::vector<double> ratios;
     int good = 0, all = 0;
@@ -171,7 +196,7 @@ int main(int argc, char** argv) {
       good += error <= tolerance;
       worst = std::max(worst, error / tolerance);
       ++chosen[found[i].fidelity];
-      if (cheapest > 0) ratios.push_back((model.plans()[i].cost + solvers::planning_cost) / cheapest);
+      if (cheapest > 0) ratios.push_back(model.plans()[i].cost / cheapest);
       ratios_of_errors.add(tolerance, error, estimate);
       if (tolerance == only && (error > tolerance || ratios.back() > 2.5))
         tell(asked[i], model.plans()[i], best[i], found[i], error, estimate, ratios.back());

@@ -9,7 +9,8 @@ namespace gaiter::physics {
 
 namespace {
 
-constexpr int deepest = 9;          // 63^-9 of a path: nothing finer can be told apart
+constexpr int deepest = 9;  // 63^-9 of a path: nothing finer can be told apart
+constexpr double rounding = 2.2e-16;
 constexpr double largest_rise = 4;  // of a hump between two points over that of a tangent, with caution
 
 void spread(double from, double to, Pack& points) {
@@ -42,18 +43,36 @@ std::optional<Interval> first_crossing(const Balance& balance, double from, doub
   return std::nullopt;
 }
 
-// The crossing inside an interval, to rounding.
+// Points of an interval close to where Newton's method from its end sees the crossing, and both ends.
+void crowd(double from, double to, double value, double slope, Pack& points) {
+  const double width = to - from, ahead = -value / (slope * width);
+  const double aim = from + width * (ahead > 0 && ahead < 1 ? ahead : 0.5);
+  const double part = std::fmin(0.02, 10 * std::fabs(width));
+  spread(std::fmax(from, aim - part * width), std::fmin(to, aim + part * width), points);
+  points[0] = from;
+  points[pack_width - 1] = to;
+}
+
+// The crossing inside an ascending interval, to rounding.
 template <typename Balance>
 double section(const Balance& balance, Interval interval) {
+  Pack points, value, slope;
+  spread(interval.from, interval.to, points);
   for (int depth = 0; depth < deepest; ++depth) {
-    Pack points, value, slope;
-    spread(interval.from, interval.to, points);
     balance(points, value, slope);
     int i = 1;
     while (i < pack_width - 1 && value[i] < 0) ++i;
     interval = {points[i - 1], points[i]};
+    if (!(interval.to - interval.from > rounding * std::fabs(interval.to))) break;
+    crowd(interval.from, interval.to, value[i - 1], slope[i - 1], points);
   }
   return interval.to;
+}
+
+// Strain of a leg whose radius has grown by the factor exp(expansion) from `start` on.
+GAITER_MULTIVERSION
+void expand(double start, const Pack& expansion, Pack& strain) {
+  for (int i = 0; i < pack_width; ++i) strain[i] = start - (1 - start) * expm1(expansion[i]);
 }
 
 }  // namespace
@@ -84,9 +103,9 @@ std::optional<double> floating_strain(const SliceSystem& system, std::size_t sli
   const SliceSystem copies = system.replicate(slice);
   const auto balance = [&](const Pack& expansion, Pack& value, Pack& slope) {
     Pack strain;
-    for (int i = 0; i < pack_width; ++i) strain[i] = start - (1 - start) * std::expm1(expansion[i]);
+    expand(start, expansion, strain);
     bandage_pressure(copies.shape(), copies.pack(0), strain, value, slope);
-    for (int i = 0; i < pack_width; ++i) slope[i] *= -(1 - start) * std::exp(expansion[i]);
+    for (int i = 0; i < pack_width; ++i) slope[i] *= strain[i] - 1;
   };
   const auto found = first_crossing(balance, 0, largest_expansion);
   if (!found) return std::nullopt;

@@ -2,67 +2,34 @@
 #include "gaiter/physics/segment_forecast.hpp"
 
 #include <algorithm>
+#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <limits>
 
-#include "gaiter/physics/leg_law.hpp"
+#include "gaiter/physics/forecast_laws.hpp"
 #include "gaiter/physics/quadrature.hpp"
-#include "gaiter/physics/slice_system.hpp"
 
 namespace gaiter::physics {
 
 namespace {
 
-constexpr double caution = 2;
-constexpr double caution_of_wall = 1.2;
-constexpr double caution_of_leg = 6;
-constexpr double caution_of_mean = 1.3;  // where the value at mid-height stands for the mean over the height
-constexpr double vacuum_permittivity = 8.8541878128e-12;  // [F/m]
+using forecast::caution;
+using forecast::caution_of_mean;
+using forecast::caution_of_wall;
+
+constexpr int points_of_cut = 4;  // through the wall
+constexpr int bits_of_cut = 24;   // the error of the mean pressure goes with the square of the cut's
+
+const Quadrature& cut_rule() {
+  static const Quadrature rule = gauss_legendre(points_of_cut);
+  return rule;
+}
 
 }  // namespace
 
 SegmentForecast::SegmentForecast(const model::Scene& scene, std::size_t segment)
-    : scene_(&scene), leg_(&scene.leg.segments[segment]), module_(&scene.bandage.modules[segment]) {
-  mean_radius_ = leg_->mean_radius();
-  taper_ = 0.5 * (leg_->upper_radius - leg_->lower_radius) / mean_radius_;
-  const Wall wall = reference_wall(scene.bandage, *module_, mean_radius_, mean_radius_);
-  inner_ = wall.inner_radius;
-  gap_ = wall.gap;
-  log_area_ = std::log1p(wall.thickness * (2 * inner_ + wall.thickness) / (inner_ * inner_));
-  actuated_.wanted = module_->voltage != 0;
-}
-
-void SegmentForecast::put(ForecastInput& input, int lane) const {
-  const model::Leg& leg = scene_->leg;
-  const double electric = vacuum_permittivity * scene_->bandage.permittivity;
-  const double voltage = module_->voltage * scene_->bandage.layers;
-  const double field = voltage / scene_->bandage.thickness;
-  input.gap[lane] = gap_ / inner_;
-  input.leg_radius[lane] = mean_radius_ / inner_;
-  input.log_area[lane] = log_area_;
-  input.taper[lane] = taper_;
-  input.slope[lane] = (leg_->upper_radius - leg_->lower_radius) / leg_->height;
-  input.rise[lane] = (leg_->upper_radius - leg_->lower_radius) / inner_;
-  input.drive[lane] = 2 * electric * (voltage / inner_) * (voltage / inner_);
-  input.membrane_drive[lane] = electric * field * field;
-  input.gives_way[lane] = leg.model == model::LegModel::rigid ? 0 : 1;
-  input.slides[lane] = scene_->contact_axial == model::ContactAxial::free ? 1 : 0;
-  const LegConstants constants = leg_constants(leg, *leg_);
-  input.pressure_limit[lane] = pressure_bound(leg, constants, gap_ / mean_radius_) * constants.pressure_scale;
-  if (leg.material == model::LegMaterial::neo_hookean) {
-    const double bulk = constants.value[0] * constants.pressure_scale,
-                 shear = constants.value[1] * constants.pressure_scale;
-    const std::array<double, 4> law{bulk, shear, bulk + shear, 0};
-    for (int k = 0; k < 4; ++k) input.leg[k][lane] = law[k];
-  } else {
-    const model::Compliance& law = leg_->compliance;
-    const std::array<double, 4> values{law.a, law.b, constants.value[1], law.d};
-    for (int k = 0; k < 4; ++k) input.leg[k][lane] = values[k];
-  }
-  for (std::size_t term = 0; term < input.terms.size(); ++term) {
-    input.terms[term].mu[lane] = scene_->bandage.ogden[term].mu;
-    input.terms[term].alpha[lane] = scene_->bandage.ogden[term].alpha;
-  }
+    : scene_(&scene), segment_(segment), energised_(scene.bandage.modules[segment].voltage != 0) {
+  actuated_.wanted = energised_;
 }
 
 void SegmentForecast::take(const ForecastState& found, int lane, State& state) const {
@@ -74,7 +41,7 @@ void SegmentForecast::take(const ForecastState& found, int lane, State& state) c
   state.gain = found.gain[lane];
   state.strain = found.strain[lane];
   state.response = found.response[lane];
-  state.narrow = found.narrow[lane];
+  for (int k = 0; k < 2; ++k) state.poles[k] = {found.poles.part[k][lane], found.poles.fall[k][lane]};
   const bool widens = taper_ >= 0;
   state.lower_end_open = !((widens ? found.narrow_net : found.wide_net)[lane] > 0);
   state.upper_end_open = !((widens ? found.wide_net : found.narrow_net)[lane] > 0);
@@ -86,22 +53,19 @@ void SegmentForecast::analyse(std::span<SegmentForecast> forecasts, Depth depth)
   thread_local ForecastState rest, actuated;
   thread_local ForecastErrors errors;
   if (forecasts.empty()) return;
-  input.material = forecasts[0].scene_->leg.material;
-  input.terms.resize(forecasts[0].scene_->bandage.ogden.size());
   for (std::size_t first = 0; first < forecasts.size(); first += pack_width) {
     const auto some = forecasts.subspan(first, std::min<std::size_t>(pack_width, forecasts.size() - first));
     const int count = static_cast<int>(some.size());
-    bool voltage = false;
-    // The last pack's spare places repeat the last segment.
-    for (int lane = 0; lane < pack_width; ++lane) some[std::min(lane, count - 1)].put(input, lane);
-    input.close();
-    for (const SegmentForecast& one : some) voltage = voltage || one.module_->voltage != 0;
+    input.start(*some[0].scene_);
+    for (int lane = 0; lane < count; ++lane) input.set(lane, *some[lane].scene_, some[lane].segment_);
+    input.close(count);
+    const bool voltage = input.energised;
     Pack at_rest, under_voltage;
     forecast_sliding(input, false, at_rest);
     if (voltage) forecast_sliding(input, true, under_voltage);
     for (int lane = 0; lane < count; ++lane) {
       some[lane].rest_.sliding = some[lane].actuated_.sliding = at_rest[lane];
-      if (some[lane].module_->voltage != 0) some[lane].actuated_.sliding = under_voltage[lane];
+      if (some[lane].energised_) some[lane].actuated_.sliding = under_voltage[lane];
     }
     if (depth == Depth::sliding) continue;
     forecast_state(input, false, nullptr, rest);
@@ -113,73 +77,63 @@ void SegmentForecast::analyse(std::span<SegmentForecast> forecasts, Depth depth)
     forecast_errors(input, strain, errors);
     for (int lane = 0; lane < count; ++lane) {
       SegmentForecast& one = some[lane];
-      const model::Leg& leg = one.scene_->leg;
-      one.strain_of_none_ =
-          leg.model == model::LegModel::rigid || leg.material == model::LegMaterial::neo_hookean
-              ? 0
-              : input.leg[0][lane] + input.leg[2][lane];
+      one.taper_ = input.taper[lane];
       one.take(rest, lane, one.rest_);
-      if (one.module_->voltage != 0) one.take(actuated, lane, one.actuated_);
+      if (one.energised_) one.take(actuated, lane, one.actuated_);
       for (std::size_t n = 0; n < one.wall_.size(); ++n) {
         one.height_[n] = errors.height[n][lane];
         one.wall_[n] = errors.wall[n][lane];
       }
-      one.find_poles(one.rest_);
-      if (one.module_->voltage != 0) one.find_poles(one.actuated_);
-      one.find_cuts();
+      one.find_cuts(input, lane);
     }
   }
 }
 
 void SegmentForecast::want(bool rest, bool actuated) {
   rest_.wanted = rest;
-  actuated_.wanted = actuated && module_->voltage != 0;
+  actuated_.wanted = actuated && energised_;
   if (!rest && !actuated_.wanted) rest_.wanted = true;
 }
 
-// By one point through the wall and a leg without pressure: only its sign counts, where the bandage is nearly
-// slack.
-double SegmentForecast::net_pressure(double height, bool voltage) const {
-  const double radius = mean_radius_ * (1 + taper_ * (2 * height - 1)) * (1 - strain_of_none_);
-  const double excess = (gap_ + (radius - mean_radius_)) / inner_, swell = excess * (2 + excess);
-  if (!voltage) return excess;
-  constexpr std::array<double, 4> nodes{0.06943184420297371, 0.33000947820757187, 0.66999052179242813,
-                                        0.93056815579702629};
-  constexpr std::array<double, 4> weights{0.17392742256872693, 0.32607257743127307, 0.32607257743127307,
-                                          0.17392742256872693};
-  double pressure = 0;
-  for (std::size_t j = 0; j < nodes.size(); ++j) {
-    const double square = swell * std::exp(-log_area_ * nodes[j]), x = 0.5 * std::log1p(square);
-    double stress = 0;
-    for (const model::OgdenTerm& term : scene_->bandage.ogden)
-      stress += term.mu * std::sinh(std::clamp(term.alpha * x, -300.0, 300.0));
-    pressure += weights[j] * stress / (1 + square);
-  }
-  const double inner = 1 + swell, area = std::expm1(log_area_);  // over A^2
-  const double log_wall = std::log1p(area / inner);
-  const double drive = module_->voltage * scene_->bandage.layers / inner_;
-  return log_area_ * pressure - 2 * vacuum_permittivity * scene_->bandage.permittivity * drive * drive *
-                                    area / (inner * (inner + area) * log_wall * log_wall);
-}
-
-void SegmentForecast::find_cuts() {
+// Heights at which the pressure on a leg without pressure, which decides there, changes its sign.
+void SegmentForecast::find_cuts(const ForecastInput& input, int lane) {
   cuts_.clear();
-  const bool voltage = module_->voltage != 0;
   open_everywhere_ = rest_.lower_end_open && rest_.upper_end_open &&
-                     (!voltage || (actuated_.lower_end_open && actuated_.upper_end_open));
-  for (const bool under_voltage : {false, true}) {
-    const State& state = under_voltage ? actuated_ : rest_;
-    if (under_voltage && !voltage) break;
-    if (state.lower_end_open == state.upper_end_open) continue;
-    double from = 0, to = 1;
-    const bool low = net_pressure(0, under_voltage) > 0;
-    if (low == (net_pressure(1, under_voltage) > 0)) continue;
-    for (int k = 0; k < 50; ++k) {
-      const double middle = 0.5 * (from + to);
-      ((net_pressure(middle, under_voltage) > 0) == low ? from : to) = middle;
+                     (!energised_ || (actuated_.lower_end_open && actuated_.upper_end_open));
+  const bool cut_at_rest = rest_.lower_end_open != rest_.upper_end_open;
+  const bool cut_actuated = energised_ && actuated_.lower_end_open != actuated_.upper_end_open;
+  if (!cut_at_rest && !cut_actuated) return;
+  const bool law = input.material == model::LegMaterial::compliance && input.gives_way[lane] > 0;
+  const double left = law ? 1 - input.leg[0][lane] - input.leg[2][lane] : 1.0;  // of the leg's radius
+  const double gap = input.gap[lane], leg = input.leg_radius[lane];
+  const auto excess = [&](double height) { return gap - leg + leg * (1 + taper_ * (2 * height - 1)) * left; };
+  if (cut_at_rest && (excess(0) > 0) != (excess(1) > 0)) cuts_.push_back(excess(0) / (excess(0) - excess(1)));
+  if (!cut_actuated) return;
+  const Quadrature& rule = cut_rule();
+  std::array<double, points_of_cut> ratios;
+  for (int j = 0; j < points_of_cut; ++j) ratios[j] = std::exp(-input.log_area[lane] * rule.nodes[j]);
+  const auto pressure = [&](double height) {
+    const double above = excess(height), swell = above * (2 + above);
+    double passive = 0;
+    for (int j = 0; j < points_of_cut; ++j) {
+      const double square = swell * ratios[j], x = 0.5 * std::log1p(square);
+      double stress = 0;
+      for (const ForecastInput::Term& term : input.terms) {
+        const double power = std::exp(forecast::clamped(term.alpha[lane] * x));
+        stress += term.mu[lane] * (power - 1 / power);
+      }
+      passive += 0.5 * rule.weights[j] * stress / (1 + square);
     }
-    cuts_.push_back(0.5 * (from + to));
-  }
+    const double inner = 1 + swell, area = input.area[lane], log_wall = std::log1p(area / inner);
+    return input.log_area[lane] * passive -
+           input.drive[lane] * area / (inner * (inner + area) * log_wall * log_wall);
+  };
+  const double low = pressure(0), high = pressure(1);
+  if ((low > 0) == (high > 0)) return;
+  std::uintmax_t most = 60;
+  const auto [from, to] = boost::math::tools::toms748_solve(
+      pressure, 0.0, 1.0, low, high, boost::math::tools::eps_tolerance<double>(bits_of_cut), most);
+  cuts_.push_back(0.5 * (from + to));
   std::sort(cuts_.begin(), cuts_.end());
 }
 
@@ -219,34 +173,6 @@ double SegmentForecast::first_order_error() const {
 
 double SegmentForecast::gain() const {
   return worst([](const State& s) { return s.gain; });
-}
-
-// The pressure has singularities over the (complex) height where the gain is -1, and Gauss's rule converges
-// as the ellipse through them says. With an exponential of rate d in the leg's law these lie where the gain
-// that it gives is 1 in size, pi/|d| off the real pressures; the part that they have in the pressure is
-// 1/|d|.
-void SegmentForecast::find_poles(State& s) const {
-  const model::Leg& leg = scene_->leg;
-  s.poles = {};
-  if (leg.model == model::LegModel::rigid || !(s.pressure > 0)) return;
-  const double half = std::max(s.pressure - s.narrow, 1e-3 * s.pressure);
-  const auto pole_of = [&](double size, double rate) -> Pole {
-    if (!(size != 0 && rate != 0)) return {};
-    const double strength = std::fabs(s.slope * size * rate);
-    const double where = -std::log(std::max(strength, 1e-300)) / rate;  // pressure at which the gain is 1
-    // |z + sqrt(z^2 - 1)| by the sum of the distances of z from -1 and 1.
-    const double x = (where - s.pressure) / half, y = M_PI / (rate * half);
-    const double sum = 0.5 * (std::sqrt((x + 1) * (x + 1) + y * y) + std::sqrt((x - 1) * (x - 1) + y * y));
-    const double ellipse = sum + std::sqrt(std::max(sum * sum - 1, 0.0));
-    return {caution_of_leg / (std::fabs(rate) * s.pressure), 1 / (ellipse * ellipse)};
-  };
-  if (leg.material == model::LegMaterial::neo_hookean) {
-    s.poles[0] = pole_of(1, 2 * s.response);
-  } else {
-    const model::Compliance& law = leg_->compliance;
-    s.poles[0] = pole_of(law.a, law.b);
-    s.poles[1] = pole_of(leg.variant == model::ComplianceVariant::anchored ? -law.a : law.c, law.d);
-  }
 }
 
 double SegmentForecast::leg_error(const State& s, int n) const {

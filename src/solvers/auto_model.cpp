@@ -6,8 +6,10 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <tuple>
 
 #include "gaiter/physics/height_error.hpp"
+#include "gaiter/physics/quick_forecast.hpp"
 #include "gaiter/physics/segment_forecast.hpp"
 #include "gaiter/solvers/auto_climb.hpp"
 #include "gaiter/solvers/axisym_model.hpp"
@@ -20,20 +22,25 @@ namespace {
 using model::Fidelity;
 using physics::SegmentForecast;
 
-constexpr int most_planned_slices = 64, most_slices = 256;
-constexpr int most_planned_wall_points = 24;
-constexpr double strict_tolerance = 5e-5;  // below which few slices are not trusted to tell their own error
+constexpr int most_slices = 256;
+constexpr std::size_t slices_in_batch = 2048;
+constexpr int most_smooth_slices = 12;  // beyond, slices are checked once solved
+// In each piece of the height, where the bandage leaves the leg.
+constexpr double error_of_two_slices = 0.035;
 constexpr int most_sliding_slices = 192;
 constexpr int most_refinements = 3;
-constexpr double shares_model = 0.7;     // of the tolerance that the model's error may take
+constexpr double shares_model = 0.7;  // of the tolerance that the model's error may take
+constexpr double strict_tolerance = 5e-5, strict_share = 0.05;  // likewise, of small ones
 constexpr double share_of_slices = 0.3;  // of the goal, for slices that finer models' errors are added to
 
-// Measured on one core of a 2.1 GHz x86-64 server, batches of some hundred segments [s]; of a slice in one
-// state, and of its pressure at one wall point, per Ogden term.
-constexpr double cost_of_segment = 0.15e-6;
-constexpr double cost_of_rigid_slice = 60e-9, cost_of_slice = 260e-9, cost_of_own_error = 60e-9;
-constexpr double cost_of_pressure = 13e-9;
+// Measured on one core of a 2.1 GHz x86-64 server, large batches [s]; of a slice in one state, and of its
+// pressure at one wall point, per Ogden term.
+constexpr double cost_of_segment = 0.37e-6;
+constexpr double cost_of_rigid_slice = 13e-9, cost_of_corrected_slice = 21e-9, cost_of_slice = 134e-9;
+constexpr double cost_of_own_error = 3e-9;
+constexpr double cost_of_rigid_pressure = 1.5e-9, cost_of_pressure = 10.5e-9;
 constexpr double cost_of_sliding_slice = 8e-6;
+constexpr double cost_of_quick_forecast = 0.19e-6, cost_of_forecast = 0.6e-6;
 constexpr double cost_of_finite_elements = 0.04;  // at refinement 0; four times more with each
 
 }  // namespace
@@ -45,73 +52,121 @@ double plan_cost(const model::Scene& scene, std::size_t segment, const SlicePlan
     return states * cost_of_finite_elements * std::pow(4, plan.slice_count);
   if (plan.fidelity == Fidelity::sliding) return states * cost_of_sliding_slice * slices;
   const double points = plan.wall_points * static_cast<double>(scene.bandage.ogden.size());
-  const double slice = (plan.fidelity == Fidelity::slice ? cost_of_slice : cost_of_rigid_slice) +
-                       (plan.slice_count >= physics::fewest_for_height_error ? cost_of_own_error : 0);
-  return cost_of_segment + states * slices * (slice + points * cost_of_pressure);
+  const bool solved = plan.fidelity == Fidelity::slice;
+  const double slice = (solved                                   ? cost_of_slice
+                        : plan.fidelity == Fidelity::first_order ? cost_of_corrected_slice
+                                                                 : cost_of_rigid_slice) +
+                       (plan.slice_count >= physics::fewest_for_height_error ? cost_of_own_error : 0) +
+                       points * (solved ? cost_of_pressure : cost_of_rigid_pressure);
+  return cost_of_segment + states * slices * slice;
 }
 
 namespace {
 
+// One segment of a quick forecast, asked like a SegmentForecast.
+struct QuickSegment {
+  static constexpr int most_slices = physics::QuickForecast::most_points, most_wall_points = most_slices;
+
+  const physics::QuickForecast& pack;
+  int place;
+
+  bool sure() const { return pack.sure[place] > 0; }
+  double compliance_error() const { return pack.compliance[place]; }
+  double first_order_error() const { return pack.first_order[place]; }
+  double height_error(int slices) const { return pack.height[slices][place]; }
+  double wall_error(int points) const { return pack.wall[points][place]; }
+  double drop_factor() const { return pack.drop_factor[place]; }
+  double volume_factor() const { return pack.volume_factor[place]; }
+};
+
 // Errors of the wanted outputs over those of the pressure.
-double worst_factor(const model::Goal& goal, const SegmentForecast& forecast) {
+template <typename Forecast>
+double worst_factor(const model::Goal& goal, const Forecast& forecast) {
   double factor = 1;
   if (goal.actuation_drop) factor = std::max(factor, forecast.drop_factor());
   if (goal.volume_change) factor = std::max(factor, forecast.volume_factor());
   return factor;
 }
 
-void choose_points(const SegmentForecast& forecast, double tolerance, SlicePlan& plan) {
-  const bool cut = !forecast.cuts().empty();
-  plan.wall_points = 1;
-  while (plan.wall_points < most_planned_wall_points &&
-         forecast.wall_error(plan.wall_points) > (cut ? 0.1 : 0.25) * tolerance)
-    ++plan.wall_points;
-  plan.wall_error = forecast.wall_error(plan.wall_points);
-  // Past a cut the pressure rises from 0 like no exponential: slices there are checked once solved.
-  plan.roughness = cut ? 1 : 0;
-  plan.slice_count = cut ? physics::fewest_for_height_error + (tolerance < strict_tolerance ? 4 : 1) : 1;
-  // Of a small error more terms count than the forecast has.
-  const double share = tolerance > 5e-5 ? 0.9 : tolerance > 5e-6 ? 0.6 : 0.3;
-  const double left = share * tolerance - plan.wall_error;
-  while (plan.slice_count < most_planned_slices && forecast.height_error(plan.slice_count) > left)
-    ++plan.slice_count;
-  plan.height_error = forecast.height_error(plan.slice_count);
+// At least `slices`. What is solved together fills packs of 64 segments with equally many, so the rare plans
+// with many choose among few numbers.
+int common_count(int slices) {
+  int count = physics::fewest_for_height_error + 1;
+  while (count < slices) count += (count + 1) / 2;
+  return std::min(count, most_slices);
 }
 
-// Rigid leg, first order or slices, to a tolerance of the pressures.
-SlicePlan plan_slices(const model::Scene& scene, std::size_t segment, const SegmentForecast& forecast,
-                      double tolerance) {
-  const model::Goal goal = scene.goal.of(segment);
-  SlicePlan plan;
+// False: the forecast does not reach far enough.
+template <typename Forecast>
+bool choose_points(const Forecast& forecast, SlicePlan& plan) {
+  const double tolerance = plan.tolerance;
+  const bool cut = !plan.cuts.empty();
+  const double for_wall = (cut ? 0.1 : 0.25) * tolerance;
+  plan.wall_points = 1;
+  while ((plan.wall_error = forecast.wall_error(plan.wall_points)) > for_wall &&
+         plan.wall_points < Forecast::most_wall_points)
+    ++plan.wall_points;
+  // Of a small error more terms count than the forecast has.
+  const double share = tolerance > 5e-5 ? 0.9 : tolerance > 5e-6 ? 0.7 : 0.5;
+  const double left = share * tolerance - plan.wall_error;
+  plan.roughness = 0;
+  plan.slice_count = 1;
+  while ((plan.height_error = forecast.height_error(plan.slice_count)) > left &&
+         plan.slice_count < Forecast::most_slices)
+    plan.slice_count += 1 + plan.slice_count / most_smooth_slices;
+  if (cut && error_of_two_slices < left) {
+    plan.slice_count = 2;
+    plan.height_error = error_of_two_slices;
+  } else if (cut || plan.slice_count > most_smooth_slices) {
+    // Past a cut the pressure rises from 0 like no exponential, and near one it changes fast. The forecast of
+    // the leg's singularities is too cautious there, so that slices are checked once solved.
+    int fewest = physics::fewest_for_height_error + 1;
+    for (double reached = 1e-2; reached > 1.5 * tolerance; reached *= 0.1) fewest += 2;
+    plan.roughness = 1;
+    plan.height_error = 0;
+    plan.slice_count = common_count(std::clamp(plan.slice_count / 2, fewest, fewest * fewest / 3));
+    return !(plan.wall_error > for_wall);
+  }
+  return !(plan.wall_error > for_wall) && !(plan.height_error > left);
+}
+
+// Rigid leg, first order or slices, to an accuracy of the wanted outputs. `contact`: somewhere the bandage
+// presses on the leg, and does so from end to end. False as choose_points.
+template <typename Forecast>
+bool choose_model(const model::Scene& scene, const model::Goal& goal, double accuracy,
+                  const Forecast& forecast, bool contact, SlicePlan& plan) {
+  plan.factor = worst_factor(goal, forecast);
+  const double tolerance = plan.asked = accuracy / plan.factor;
   plan.actuated = goal.actuated();
-  plan.cuts = forecast.cuts();
-  plan.change_beyond = forecast.sliding_error();
-  const bool sure = plan.cuts.empty() && !forecast.open_everywhere();
-  const double rigid = forecast.compliance_error(), first = forecast.first_order_error();
+  plan.fidelity = Fidelity::slice;
+  plan.model_error = 0;
   if (scene.leg.model == model::LegModel::rigid) {
     plan.fidelity = Fidelity::rigid;
-  } else if (sure && !goal.volume_change && rigid < shares_model * tolerance) {
-    plan.fidelity = Fidelity::rigid;
-    plan.model_error = rigid;
-  } else if (sure && first < shares_model * tolerance && tolerance >= strict_tolerance) {
-    plan.fidelity = Fidelity::first_order;
-    plan.model_error = first;
+  } else if (contact) {
+    const double rigid = forecast.compliance_error(), first = forecast.first_order_error();
+    if (!goal.volume_change && rigid < shares_model * tolerance) {
+      plan.fidelity = Fidelity::rigid;
+      plan.model_error = rigid;
+    } else if (first < (tolerance < strict_tolerance ? strict_share : shares_model) * tolerance) {
+      plan.fidelity = Fidelity::first_order;
+      plan.model_error = first;
+    }
   }
   plan.change_beyond += plan.model_error;
   plan.tolerance = tolerance - plan.model_error;
-  choose_points(forecast, plan.tolerance, plan);
-  plan.cost = plan_cost(scene, segment, plan);
-  return plan;
+  return choose_points(forecast, plan);
 }
 
 SlicePlan plan_for(const model::Scene& scene, std::size_t segment, SegmentForecast& forecast,
                    double accuracy) {
   const model::Goal goal = scene.goal.of(segment);
   forecast.want(goal.pressure_rest || goal.actuation_drop, goal.actuated());
-  const double factor = worst_factor(goal, forecast);
-  SlicePlan plan = plan_slices(scene, segment, forecast, accuracy / factor);
-  plan.asked = accuracy / factor;
-  plan.factor = factor;
+  SlicePlan plan;
+  plan.cuts = forecast.cuts();
+  plan.change_beyond = forecast.sliding_error();
+  const bool contact = plan.cuts.empty() && !forecast.open_everywhere();
+  choose_model(scene, goal, accuracy, forecast, contact, plan);
+  plan.cost = cost_of_quick_forecast + cost_of_forecast + plan_cost(scene, segment, plan);
   return plan;
 }
 
@@ -123,26 +178,67 @@ double accuracy_of_slices(const model::Goal& goal) {
 }  // namespace
 
 SlicePlan plan_segment(const model::Scene& scene, std::size_t segment) {
-  SegmentForecast forecast(scene, segment);
-  forecast.analyse();
-  SlicePlan plan = plan_for(scene, segment, forecast, accuracy_of_slices(scene.goal));
+  const SegmentTask asked{&scene, segment};
+  std::vector<SlicePlan> plans;
+  plan_segments({&asked, 1}, plans);
+  const SlicePlan& plan = plans[0];
   if (scene.goal.up_to == Fidelity::slice) return plan;
   const SegmentTask task{&scene, segment, &plan};
   const model::SegmentResult result = solve_segments(PETSC_COMM_SELF, {&task, 1})[0];
   const SlicePlan higher = climb(scene, segment, plan, result);
   if (higher.asked == plan.asked) return higher;
+  SegmentForecast forecast(scene, segment);
+  forecast.analyse();
   return plan_for(scene, segment, forecast, higher.asked * plan.factor);
 }
 
 void plan_segments(std::span<const SegmentTask> tasks, std::vector<SlicePlan>& plans) {
+  // Large, so that it is kept for the next batch.
+  thread_local physics::ForecastInput input;
+  thread_local physics::QuickForecast quick;
   thread_local std::vector<SegmentForecast> forecasts;
+  thread_local std::vector<std::size_t> doubtful;
+  plans.resize(tasks.size());
   forecasts.clear();
-  for (const SegmentTask& task : tasks) forecasts.emplace_back(*task.scene, task.segment);
+  doubtful.clear();
+  for (std::size_t first = 0; first < tasks.size(); first += physics::pack_width) {
+    const int count = static_cast<int>(std::min<std::size_t>(physics::pack_width, tasks.size() - first));
+    physics::Pack rest{}, actuated{};
+    bool beyond = false;
+    input.start(*tasks[first].scene);
+    for (int place = 0; place < count; ++place) {
+      const auto& [scene, segment, none] = tasks[first + place];
+      const model::Goal goal = scene->goal.of(segment);
+      const bool voltage = scene->bandage.modules[segment].voltage != 0;
+      input.set(place, *scene, segment);
+      actuated[place] = goal.actuated() && voltage ? 1 : 0;
+      rest[place] = goal.pressure_rest || goal.actuation_drop || actuated[place] == 0 ? 1 : 0;
+      beyond = beyond || goal.up_to != Fidelity::slice;
+    }
+    input.close(count);
+    quick.analyse(input, rest, actuated);
+    for (int place = 0; place < count; ++place) {
+      const auto& [scene, segment, none] = tasks[first + place];
+      SlicePlan& plan = plans[first + place];
+      const QuickSegment forecast{quick, place};
+      plan.cuts.clear();
+      plan.change_beyond = 0;
+      if (!beyond && forecast.sure() &&
+          choose_model(*scene, scene->goal.of(segment), accuracy_of_slices(scene->goal), forecast, true,
+                       plan)) {
+        plan.cost = cost_of_quick_forecast + plan_cost(*scene, segment, plan);
+      } else {
+        doubtful.push_back(first + place);
+        forecasts.emplace_back(*scene, segment);
+      }
+    }
+  }
   SegmentForecast::analyse(forecasts);
-  plans.clear();
-  for (std::size_t t = 0; t < tasks.size(); ++t)
-    plans.push_back(
-        plan_for(*tasks[t].scene, tasks[t].segment, forecasts[t], accuracy_of_slices(tasks[t].scene->goal)));
+  for (std::size_t k = 0; k < doubtful.size(); ++k) {
+    const SegmentTask& task = tasks[doubtful[k]];
+    plans[doubtful[k]] =
+        plan_for(*task.scene, task.segment, forecasts[k], accuracy_of_slices(task.scene->goal));
+  }
 }
 
 // Slices, or something simpler, to what their plans ask for now.
@@ -154,7 +250,7 @@ void AutoModel::plan_again(std::span<const SegmentTask> tasks, const std::vector
   for (std::size_t k = 0; k < chosen.size(); ++k) {
     const SegmentTask& task = tasks[chosen[k]];
     SlicePlan& plan = plans_[chosen[k]];
-    const double before = plan.cost + planning_cost;
+    const double before = plan.cost;
     plan = plan_for(*task.scene, task.segment, forecasts[k], plan.asked * plan.factor);
     plan.cost += before;
   }
@@ -169,19 +265,36 @@ bool AutoModel::refine(SlicePlan& plan, const model::SegmentResult& result) cons
   if (!model::trustworthy(result.status) || good) return false;
   const int most = axisym ? most_refinements : sliding ? most_sliding_slices : most_slices;
   if (plan.slice_count >= most) return false;
-  plan.slice_count =
-      axisym ? plan.slice_count + 1
-             : std::min(most, sliding ? 2 * plan.slice_count : plan.slice_count + (plan.slice_count + 3) / 3);
+  const int now = plan.slice_count, more = plan.roughness > 0 ? common_count(now + 1) : now + (now + 3) / 3;
+  plan.slice_count = axisym ? now + 1 : std::min(most, sliding ? 2 * now : more);
   return true;
 }
 
-void AutoModel::solve_group(std::span<const SegmentTask> tasks, const std::vector<std::size_t>& chosen) {
+// Those with equally many slices together, as many at a time as the caches hold.
+void AutoModel::solve_slices(std::span<const SegmentTask> tasks, std::vector<std::size_t>& chosen) {
+  std::sort(chosen.begin(), chosen.end(), [&](std::size_t a, std::size_t b) {
+    const SlicePlan &one = plans_[a], &other = plans_[b];
+    return std::tuple(one.cuts.size(), one.slice_count, one.wall_points, a) <
+           std::tuple(other.cuts.size(), other.slice_count, other.wall_points, b);
+  });
+  for (std::size_t first = 0, end = 0; first < chosen.size(); first = end) {
+    own_.clear();
+    for (std::size_t held = 0; end < chosen.size() && held < slices_in_batch; ++end) {
+      const std::size_t t = chosen[end];
+      held += plans_[t].slice_count * (1 + plans_[t].cuts.size());
+      own_.push_back({tasks[t].scene, tasks[t].segment, &plans_[t]});
+    }
+    const auto found = slices_.solve(own_);
+    for (std::size_t k = first; k < end; ++k) results_[chosen[k]] = found[k - first];
+  }
+}
+
+// By finite elements or sliding slices.
+void AutoModel::solve_finer(std::span<const SegmentTask> tasks, const std::vector<std::size_t>& chosen) {
   std::vector<SegmentTask> own;
   for (const std::size_t t : chosen) own.push_back({tasks[t].scene, tasks[t].segment, &plans_[t]});
   std::vector<model::SegmentResult> others;
-  std::span<const model::SegmentResult> found;
-  const Fidelity fidelity = plans_[chosen[0]].fidelity;
-  if (fidelity == Fidelity::axisym) {
+  if (plans_[chosen[0]].fidelity == Fidelity::axisym) {
     for (const SegmentTask& task : own) {
       model::Scene scene = *task.scene;
       scene.axisym.refine = task.plan->slice_count;
@@ -191,14 +304,10 @@ void AutoModel::solve_group(std::span<const SegmentTask> tasks, const std::vecto
       const SegmentTask alone{&scene, task.segment};
       others.push_back(solve_axisym(group_, {&alone, 1})[0]);
     }
-    found = others;
-  } else if (fidelity == Fidelity::sliding) {
-    others = solve_sliding(MPI_COMM_SELF, own);
-    found = others;
   } else {
-    found = slices_.solve(own);
+    others = solve_sliding(MPI_COMM_SELF, own);
   }
-  for (std::size_t k = 0; k < chosen.size(); ++k) results_[chosen[k]] = found[k];
+  for (std::size_t k = 0; k < chosen.size(); ++k) results_[chosen[k]] = others[k];
 }
 
 std::span<const model::SegmentResult> AutoModel::solve(std::span<const SegmentTask> tasks) {
@@ -207,15 +316,15 @@ std::span<const model::SegmentResult> AutoModel::solve(std::span<const SegmentTa
   std::vector<std::size_t> open(tasks.size());
   std::iota(open.begin(), open.end(), std::size_t{0});
   while (!open.empty()) {
-    // What is solved together has the same model; sliding slices also the same number. A pack of slices works
-    // on as many points of the wall as the one with the most has.
+    // What is solved together has the same model; sliding slices also the same number.
     std::map<std::pair<Fidelity, int>, std::vector<std::size_t>> groups;
     for (const std::size_t t : open)
-      groups[{plans_[t].fidelity, plans_[t].fidelity == Fidelity::sliding  ? plans_[t].slice_count
-                                  : plans_[t].fidelity == Fidelity::axisym ? 0
-                                                                           : plans_[t].wall_points}]
+      groups[{plans_[t].fidelity, plans_[t].fidelity == Fidelity::sliding ? plans_[t].slice_count : 0}]
           .push_back(t);
-    for (const auto& [key, chosen] : groups) solve_group(tasks, chosen);
+    for (auto& [key, chosen] : groups) {
+      const bool coupled = key.first == Fidelity::axisym || key.first == Fidelity::sliding;
+      coupled ? solve_finer(tasks, chosen) : solve_slices(tasks, chosen);
+    }
     std::vector<std::size_t> finer;
     std::erase_if(open, [&](std::size_t t) {
       SlicePlan& plan = plans_[t];

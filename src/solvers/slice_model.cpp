@@ -100,12 +100,14 @@ void SliceModel::take(std::span<const SegmentTask> tasks) {
   rigid_pressure_.resize(packs);
   rest_pressure_.resize(packs);
   radii_.resize(packs);
+  places_.resize(packs);
   outcomes_.assign(packs, {});
   for (Block& block : blocks_) {
     set_segments(block.tasks, block.segments);
     system_.set_segments(block.first_pack, block.heights, block.segments,
                          std::span(radii_).subspan(block.first_pack));
     for (std::size_t k = block.first_pack; k < block.end_pack(); ++k) {
+      places_[k] = block.segments.count;
       outcomes_[k].leg_radius = radii_[k];
       outcomes_[k].inner_radius = block.segments.constants.inner_radius;
     }

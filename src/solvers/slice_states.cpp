@@ -44,6 +44,8 @@ void SliceModel::rest() {
       physics::bandage_pressure(system_.shape(), rows, none, rigid_pressure_[k], slope);
       physics::start_fixed_point(true, states_[k]);
     }
+    // Spare places of a pack: what is open is all that later steps work on.
+    for (int i = places_[k]; i < pack_width; ++i) states_[k].open[i] = 0;
   });
   if (newton_) solve_doubtful(true);
   each_pack([&](const Block& block, std::size_t k) { record_rest(block, k); });
@@ -61,7 +63,8 @@ void SliceModel::actuate() {
     for (int i = 0; i < pack_width; ++i) {
       const bool passive = block.segments.constants.voltage[i] == 0;
       const bool lost = outcomes_[k].status_of(i) >= Status::no_equilibrium;
-      state.open[i] = passive || lost ? 0 : state.open[i];
+      const bool spare = i >= block.segments.count;
+      state.open[i] = passive || lost || spare ? 0 : state.open[i];
     }
   });
   using First = SliceSolver::FirstResidual;

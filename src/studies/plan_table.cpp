@@ -76,7 +76,7 @@ std::string plan_text(const Request& request, const Designs& designs) {
       if (!scene.wants(i)) continue;
       const SlicePlan plan = solvers::plan_segment(scene, i);
       ++shares[plan.fidelity].segments;
-      shares[plan.fidelity].cost += plan.cost + solvers::planning_cost;
+      shares[plan.fidelity].cost += plan.cost;
     }
   }
   std::string text;

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "gaiter/model/leg.hpp"
+#include "gaiter/model/scene.hpp"
 #include "gaiter/physics/vector_math.hpp"
 
 // What plans go by, of 64 segments at a time, each by its slice at mid-height. Lengths are divided by the
@@ -18,29 +18,43 @@ struct ForecastInput {
   struct Term {
     Pack mu, alpha;  // [Pa, 1]
   };
-  Pack gap, leg_radius;     // (R - A)/A and R/A at mid-height
-  Pack log_area;            // ln(B^2/A^2)
-  Pack taper;               // half the difference of the end radii over the mean radius
-  Pack slope;               // of the leg's outline: difference of the end radii over the height
-  Pack rise;                // difference of the end radii
-  Pack drive;               // 2 eps V^2/A^2, layers as if the field were the same in all [Pa]
-  Pack membrane_drive;      // eps V^2/h^2 [Pa]
-  Pack gives_way;           // 1, or 0: a rigid leg
-  Pack slides;              // 1, or 0: held on the slope
-  Pack pressure_limit;      // beyond which the bandage is slack [Pa]
-  std::array<Pack, 4> leg;  // a, b, c, d of the strain law; neo-Hookean: K, G/3, K + G/3 [Pa]
+  // By set().
+  Pack mean_radius, rise, height;  // of the leg; rise: difference of the end radii [m]
+  Pack inner_radius, thickness;    // of the wall [m]
+  Pack gap;                        // R - A at mid-height [m]; by close(): (R - A)/A
+  Pack voltage, electric;          // times the number of layers [V]; eps [F/m]
+  Pack gives_way;                  // 1, or 0: a rigid leg
+  Pack slides;                     // 1, or 0: held on the slope
+  std::array<Pack, 4> leg;         // a, b, c, d of the strain law; neo-Hookean: K, G/3, K + G/3 [Pa]
   std::vector<Term> terms;
-  std::array<Pack, 2> wall_ratio;  // A^2/s at the points of the wall, by close()
   model::LegMaterial material = model::LegMaterial::compliance;
+  // By close().
+  Pack leg_radius;         // R/A at mid-height
+  Pack area, log_area;     // (B^2 - A^2)/A^2, ln(B^2/A^2)
+  Pack taper;              // half the difference of the end radii over the mean radius
+  Pack drive;              // 2 eps V^2/A^2, layers as if the field were the same in all [Pa]
+  Pack pressure_limit;     // beyond which the bandage is slack [Pa]
+  Pack middle;             // A^2/s at mid-wall
+  bool energised = false;  // there is a voltage somewhere
 
-  void close();  // once all else is given
+  // Leg material and number of terms are those of all.
+  void start(const model::Scene& scene);
+  void set(int lane, const model::Scene& scene, std::size_t segment);
+  // Repeats the last of `count` segments to the end of the pack and works out the rest.
+  void close(int count);
+};
+
+// Of the pressure over the height, by the two exponentials of the leg's law: the error of n points is part
+// fall^n.
+struct LegPoles {
+  std::array<Pack, 2> part, fall;
 };
 
 // Of one state, at rest or under voltage; see SegmentForecast::State.
 struct ForecastState {
   Pack rigid, first, pressure, passive, slope, gain, strain, response;
+  LegPoles poles;
   Pack narrow_net, wide_net;  // at the ends, on the leg without pressure; negative: open
-  Pack narrow;                // at the narrow end
 };
 
 // Error of a Gauss rule for the mean of the pressure, leading order and, for more than some points, the size

@@ -34,6 +34,9 @@ class SegmentForecast {
   // How much the leg's giving way softens the pressure's response: beyond 1 the leg's law rules.
   double gain() const;
 
+  // Beyond these, errors are hardly told apart.
+  static constexpr int most_slices = 128, most_wall_points = 24;
+
   // Of the average by a Gauss rule of `slices` points over the height, in each piece between cuts().
   double height_error(int slices) const;
   // Of the Gauss rule of `points` points through the wall.
@@ -66,28 +69,22 @@ class SegmentForecast {
     double gain = 0;     // slope times the leg's response to pressure
     double strain = 0, response = 0;  // eps and eps' [1, 1/Pa]
     double sliding = 0;
-    double narrow = 0;  // pressure at the narrow end [Pa]
     std::array<Pole, 2> poles{};
     bool lower_end_open = false, upper_end_open = false;
   };
 
-  void put(ForecastInput& input, int lane) const;
   void take(const ForecastState& found, int lane, State& state) const;
-  void find_cuts();
-  double net_pressure(double height, bool voltage) const;
+  void find_cuts(const ForecastInput& input, int lane);
   double spread(const State& state, double power) const;
-  void find_poles(State& state) const;
   double leg_error(const State& state, int slices) const;
   double height_error(const State& state, int slices) const;
   template <typename Measure>
   double worst(Measure&& measure) const;
 
   const model::Scene* scene_;
-  const model::Segment* leg_;
-  const model::Module* module_;
-  double mean_radius_, taper_;     // taper: half the difference of the radii over the mean radius
-  double inner_, gap_, log_area_;  // A [m], R - A at mid-height [m], ln(B^2/A^2)
-  double strain_of_none_ = 0;      // of the leg without pressure
+  std::size_t segment_;
+  bool energised_;
+  double taper_ = 0;  // half the difference of the radii over the mean radius
   State rest_, actuated_;
   std::array<double, forecast_points + 2> height_{}, wall_{};  // see ForecastErrors [Pa]
   std::vector<double> cuts_;

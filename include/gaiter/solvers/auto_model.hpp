@@ -19,9 +19,8 @@ SlicePlan plan_segment(const model::Scene& scene, std::size_t segment);
 // cost little more than one.
 void plan_segments(std::span<const SegmentTask> tasks, std::vector<SlicePlan>& plans);
 
-// What one solve by a plan should take [s]; planning itself takes planning_cost.
+// What one solve by a plan should take [s], without the planning that a plan's own `cost` includes.
 double plan_cost(const model::Scene& scene, std::size_t segment, const SlicePlan& plan);
-constexpr double planning_cost = 0.9e-6;  // [s]
 
 // Segments that each go by their plan. Slices whose own pressures, once solved, tell of a larger error than
 // the goal allows are solved again with more of them, and likewise sliding slices and finite elements (whose
@@ -43,12 +42,14 @@ class AutoModel {
 
  private:
   void plan_again(std::span<const SegmentTask> tasks, const std::vector<std::size_t>& chosen);
-  void solve_group(std::span<const SegmentTask> tasks, const std::vector<std::size_t>& chosen);
+  void solve_slices(std::span<const SegmentTask> tasks, std::vector<std::size_t>& chosen);
+  void solve_finer(std::span<const SegmentTask> tasks, const std::vector<std::size_t>& chosen);
   bool refine(SlicePlan& plan, const model::SegmentResult& result) const;
 
   MPI_Comm group_;
   SliceModel slices_;
   std::vector<SlicePlan> plans_;
+  std::vector<SegmentTask> own_;  // of a batch of slices
   std::vector<model::SegmentResult> results_;
 };
 

@@ -31,7 +31,7 @@ struct SlicePlan {
   double tolerance = 0;        // of the discretisation
   double asked = 0;            // sum of tolerance and model_error
   double factor = 1;           // errors of the wanted outputs over those of the pressures
-  double cost = 0;             // predicted [s]
+  double cost = 0;             // predicted, of planning and of all solves so far [s]
   double unforeseen = 0;       // of it, for refinements that the plan did not expect [s]
   bool actuated = true;        // false: the state under voltage is not wanted
   bool confirm = false;        // of sliding slices: their error is still to be found, from their residual
@@ -126,6 +126,7 @@ class SliceModel {
   std::vector<physics::Pack> radii_;                     // of the leg at each slice
   std::vector<physics::Pack> gathered_;                  // constants of slices from several packs
   std::array<std::vector<std::size_t>, 3> small_drops_;  // slices, by how many points they need
+  std::vector<int> places_;                              // in use in each pack
   std::vector<double> height_error_;                     // of each task
   std::vector<std::size_t> unclear_;                     // tasks whose pressures do not tell that error
   physics::SliceSystem check_;                           // their slices at more heights

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-2-Clause
+#pragma once
+
+#include <array>
+
+#include "gaiter/physics/forecast_kernel.hpp"
+
+namespace gaiter::physics {
+
+// What SegmentForecast tells, of 64 segments at a time and at a fraction of its cost, where a segment is
+// benign: in contact from end to end, and close enough to the first-order correction that one more Newton
+// step gives its pressures well enough. Pressures are those by one point through the wall, corrected by the
+// second derivative there; under voltage that step starts from the state at rest, less what of the relief the
+// leg's giving way leaves. Where `sure` is 0 the other numbers mean nothing. What a segment gets does not
+// depend on the others. Tested in tests/auto_model.cpp against SegmentForecast.
+struct QuickForecast {
+  static constexpr int most_points = 12;  // over the height or through the wall
+
+  Pack sure;                                       // 1 or 0
+  Pack compliance, first_order;                    // errors of the rigid leg, of the first-order correction
+  Pack drop_factor, volume_factor;                 // as SegmentForecast's
+  std::array<Pack, most_points + 1> height, wall;  // errors of Gauss rules; entry n: n points
+
+  // `rest`, `actuated`: 1 where that state's pressure counts, else 0.
+  void analyse(const ForecastInput& input, const Pack& rest, const Pack& actuated);
+};
+
+}  // namespace gaiter::physics
