@@ -44,8 +44,9 @@ void SliceModel::rest() {
       physics::bandage_pressure(system_.shape(), rows, none, rigid_pressure_[k], slope);
       physics::start_fixed_point(true, states_[k]);
     }
-    // Spare places of a pack: what is open is all that later steps work on.
-    for (int i = places_[k]; i < pack_width; ++i) states_[k].open[i] = 0;
+    // What is open is all that later steps work on. Many packs of plans have spare places; elsewhere these
+    // are few, and solved with the others every block of the Jacobian is that of its residual.
+    for (int i = planned_ ? places_[k] : pack_width; i < pack_width; ++i) states_[k].open[i] = 0;
   });
   if (newton_) solve_doubtful(true);
   each_pack([&](const Block& block, std::size_t k) { record_rest(block, k); });
