@@ -354,8 +354,11 @@ std::span<const model::SegmentResult> AutoModel::solve(std::span<const SegmentTa
   for (std::size_t t = 0; t < tasks.size(); ++t) {
     model::SegmentResult& result = results_[t];
     const SlicePlan& plan = plans_[t];
-    result.planned_discretisation_error = model::rounded_up(plan.height_error + plan.wall_error);
-    result.planned_model_error = model::rounded_up(plan.model_error);
+    const auto foreseen = [&](double error) {
+      return std::isfinite(error) ? model::rounded_up(error) : none;
+    };
+    result.planned_discretisation_error = foreseen(plan.height_error + plan.wall_error);
+    result.planned_model_error = foreseen(plan.model_error);
     result.planned_cost = model::rounded_up(plan.cost - plan.unforeseen);
     if (plan.actuated) continue;
     for (double* value : {&result.pressure_actuated, &result.pressure_actuated_rigid,

@@ -72,7 +72,9 @@ void SliceModel::height_errors(const Block& block) {
       worst[i] = std::max(worst[i], whole[i] > 0 ? sum[i] / whole[i] : 0.0);
   }
   tell([&](int place, const SlicePlan* plan) {
-    return std::max({smallest_error, worst[place], plan ? plan->height_error : 0.0});
+    // The forecast may not have known.
+    const double foreseen = plan && std::isfinite(plan->height_error) ? plan->height_error : 0;
+    return std::max({smallest_error, worst[place], foreseen});
   });
   for (std::size_t i = 0; !planned && i < block.tasks.size(); ++i)
     if (!(worst[static_cast<int>(i)] < largest_own_error)) unclear_.push_back(block.tasks[i]);
