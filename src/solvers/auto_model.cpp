@@ -35,12 +35,12 @@ constexpr double share_of_slices = 0.3;  // of the goal, for slices that finer m
 
 // Measured on one core of a 2.1 GHz x86-64 server, large batches [s]; of a slice in one state, and of its
 // pressure at one wall point, per Ogden term.
-constexpr double cost_of_segment = 0.37e-6;
-constexpr double cost_of_rigid_slice = 13e-9, cost_of_corrected_slice = 21e-9, cost_of_slice = 134e-9;
+constexpr double cost_of_segment = 0.14e-6;
+constexpr double cost_of_rigid_slice = 8e-9, cost_of_corrected_slice = 19e-9, cost_of_slice = 128e-9;
 constexpr double cost_of_own_error = 3e-9;
-constexpr double cost_of_rigid_pressure = 1.5e-9, cost_of_pressure = 10.5e-9;
+constexpr double cost_of_rigid_pressure = 2e-9, cost_of_pressure = 13e-9;
 constexpr double cost_of_sliding_slice = 8e-6;
-constexpr double cost_of_quick_forecast = 0.19e-6, cost_of_forecast = 0.6e-6;
+constexpr double cost_of_quick_forecast = 0.13e-6, cost_of_forecast = 0.5e-6;
 constexpr double cost_of_finite_elements = 0.04;  // at refinement 0; four times more with each
 
 }  // namespace
