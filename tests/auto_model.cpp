@@ -201,6 +201,21 @@ TEST(Auto, SolvesEachSegmentAsIfAlone) {
   }
 }
 
+// However few slices are taken, none of which may be where the pressure is beyond the leg's data.
+TEST(Auto, TellsOfPressuresBeyondTheData) {
+  std::vector<model::Scene> scenes{paper::scene(2.2)};
+  const auto segments = tasks::all_segments(scenes);
+  const auto exact = solvers::solve_segments(PETSC_COMM_SELF, segments);
+  EXPECT_EQ(exact[1].status, model::Status::extrapolated);
+  scenes[0].goal.up_to = Fidelity::slice;
+  solvers::AutoModel automatic(PETSC_COMM_SELF);
+  for (const double accuracy : {0.1, 1e-2, 1e-3, 1e-5}) {
+    scenes[0].goal.accuracy = accuracy;
+    const auto found = automatic.solve(segments);
+    for (std::size_t s = 0; s < exact.size(); ++s) EXPECT_EQ(found[s].status, exact[s].status) << s;
+  }
+}
+
 TEST(Auto, ComputesOnlyWhatIsWanted) {
   model::Scene scene = paper::scene(1.8);
   scene.goal.up_to = Fidelity::slice;

@@ -156,15 +156,22 @@ void bound_pressure(const State<Pack>& state, const Pack& known, const Pack& bou
   }
 }
 
+GAITER_MULTIVERSION
+void find_highest(const Pack& mean, const State<Pack>& state, Pack& highest) {
+  for (int i = 0; i < pack_width; ++i)
+    highest[i] = mean[i] * exp(0.5 * std::fabs(state.growth[i]) * std::sqrt(state.reach_square[i]));
+}
+
 }  // namespace
 
 void bound_slice_pressures(const SegmentPack& segments, model::LegMaterial material,
-                           const SlicesFound& slices, Pack& error) {
+                           const SlicesFound& slices, Pack& error, Pack& highest) {
   States<Pack> states;
   find_model_states(segments, material, slices, {}, states);
   for (int i = 0; i < pack_width; ++i) error[i] = 0;
   bound_pressure(states.rest, states.rest_known, states.rest_bounded, states, error);
   bound_pressure(states.actuated, states.actuated_known, states.actuated_bounded, states, error);
+  find_highest(slices.pressure_rest, states.rest, highest);
 }
 
 ModelShifts model_shifts(const model::Scene& scene, std::size_t segment, const model::SegmentResult& slices) {

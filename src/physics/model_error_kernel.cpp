@@ -176,6 +176,7 @@ void find_states(const SegmentPack& segments, const LegAnswer<Pack>& legs, const
     const double lengthened = 0.5 * square * turn * given;
     const double g = legs.volume_slope[i], bend = legs.volume_bend[i];
     const double v_r = 2 + g * p_r;
+    states.growth[i] = p_r;
     states.k[i] = k;
     states.slide[i] = slide;
     states.pressure_sliding[i] = sliding(p_r, p_y, p_ry, p_yy);

@@ -275,9 +275,9 @@ void SliceModel::summarise(model::Fidelity fidelity) {
     const auto slices = std::span(outcomes_).subspan(block.first_pack, block.heights.size());
     const physics::SegmentSummary summary(slices, block.weights, block.segments);
     physics::SlicesFound found;
-    Pack beyond;
+    Pack beyond, highest;
     summary.find(found);
-    physics::bound_slice_pressures(block.segments, system_.shape().material, found, beyond);
+    physics::bound_slice_pressures(block.segments, system_.shape().material, found, beyond, highest);
     for (std::size_t i = 0; i < block.tasks.size(); ++i) {
       const std::size_t task = block.tasks[i];
       const physics::SegmentNumbers& numbers = numbers_[task];
@@ -290,6 +290,11 @@ void SliceModel::summarise(model::Fidelity fidelity) {
       // A slice's state is that of the branch from rest; where this one ends is not looked for.
       result.voltage_stable =
           result.status < Status::pulled_in ? numbers.voltage : std::numeric_limits<double>::quiet_NaN();
+      // The few slices of a plan need not come near the end of the segment.
+      const bool leg = fidelity != model::Fidelity::rigid && tasks_[task].plan;
+      if (leg && result.status == Status::contact &&
+          highest[static_cast<int>(i)] > block.segments.constants.data_limit[static_cast<int>(i)])
+        result.status = Status::extrapolated;
       if (!model::trustworthy(result.status)) continue;
       result.model_error = model_error(task, result, beyond[static_cast<int>(i)]);
       model::derive_error(result);

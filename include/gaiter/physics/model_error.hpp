@@ -65,8 +65,9 @@ struct ModelErrors {
 ModelShifts model_shifts(const model::Scene& scene, std::size_t segment, const model::SegmentResult& slices);
 ModelErrors model_errors(const model::Scene& scene, std::size_t segment, const model::SegmentResult& slices);
 
-// Of a pack of segments: the larger error of both pressures of plain slices, by the same formulae.
+// Of a pack of segments: the larger error of both pressures of plain slices, by the same formulae, and the
+// pressure at rest at the end where it is higher, as a power of the radius [Pa]. Without contact garbage.
 void bound_slice_pressures(const SegmentPack& segments, model::LegMaterial material,
-                           const SlicesFound& slices, Pack& error);
+                           const SlicesFound& slices, Pack& error, Pack& highest);
 
 }  // namespace gaiter::physics

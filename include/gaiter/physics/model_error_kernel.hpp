@@ -19,6 +19,7 @@ template <typename Number>
 struct State {
   Number pressure_sliding, pressure_slope, pressure_ends;  // ModelShift
   Number volume_sliding, volume_slope, volume_ends;
+  Number growth;        // of ln P with ln R, from slice to slice
   Number k;             // K
   Number slide;         // K m H/R: how much the axial stretch differs between the ends
   Number strain;        // of the leg
