@@ -321,16 +321,16 @@ std::vector<model::SegmentResult> SlidingStudy::run() {
     const double reference =
         module.length > 0 ? module.length / (2 * M_PI) : leg.mean_radius() / module.stretch;
     const int points = static_cast<int>(wall_rules_[t].nodes.size());
-    double wall_error = 0;
+    double wall_error = std::numeric_limits<double>::quiet_NaN();
     if (tasks_[t].plan) {
       wall_error = tasks_[t].plan->wall_error;
     } else if (scene.discretisation.wall_points > 0) {
       physics::SegmentForecast forecast(scene, tasks_[t].segment);
       forecast.analyse();
       wall_error = forecast.wall_error(points);
-    } else {
-      wall_error = physics::wall_error(scene, tasks_[t].segment, points);
     }
+    // Also where a forecast expects no pressure.
+    if (!std::isfinite(wall_error)) wall_error = physics::wall_error(scene, tasks_[t].segment, points);
     results.push_back(physics::summarise_sliding(outcomes_[t], leg.height, leg.lower_radius, leg.upper_radius,
                                                  reference, wall_error));
     results.back().slice_count = system_.shape().slices();
