@@ -89,8 +89,9 @@ TEST(Forecast, QuickOneAgreesWithTheFullOne) {
       EXPECT_NEAR(quick.drop_factor[segment] / full.drop_factor(), 1, 0.1);
       EXPECT_NEAR(quick.volume_factor[segment] / full.volume_factor(), 1, 0.1);
       for (int points = 1; points <= 4; ++points) {
-        EXPECT_NEAR(std::log(quick.wall[points][segment] / full.wall_error(points)), 0, std::log(1.5));
-        EXPECT_NEAR(std::log(quick.height[points][segment] / full.height_error(points)), 0, std::log(3));
+        EXPECT_NEAR(std::log(quick.wall_error(segment, points) / full.wall_error(points)), 0, std::log(1.5));
+        EXPECT_NEAR(std::log(quick.height_error(segment, points) / full.height_error(points)), 0,
+                    std::log(3));
       }
     }
   }

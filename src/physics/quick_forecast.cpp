@@ -191,42 +191,49 @@ void QuickForecast::analyse(const ForecastInput& input, const Pack& rest_counts,
 
   strain = rest.strain;
   if (voltage) GAITER_EACH strain[i] = actuated.strain[i] < strain[i] ? actuated.strain[i] : strain[i];
-  ForecastErrors errors;
-  forecast_errors(input, strain, errors);
+  forecast_errors(input, strain, errors_);
 
-  LegPoles poles{};
-  Pack share{};  // the most that an error of the rigid leg's pressure counts for
+  poles_ = {};
+  share_ = {};
   GAITER_EACH {
     compliance[i] = first_order[i] = 0;
     volume_factor[i] = drop_factor[i] = 1;
   }
-  tell(input, rest, rest_counts, *this, share, poles);
+  tell(input, rest, rest_counts, *this, share_, poles_);
   if (voltage) {
-    tell(input, actuated, actuated_counts, *this, share, poles);
+    tell(input, actuated, actuated_counts, *this, share_, poles_);
     GAITER_EACH {
       const double drop = rest.pressure[i] - actuated.pressure[i];
       const double safe = drop > 0 ? drop : rest.pressure[i];
       drop_factor[i] = rest.pressure[i] / safe;
     }
   }
-  for (int n = 1; n <= most_points; ++n) {
-    const int known = n < forecast_points ? n : forecast_points;
-    GAITER_EACH {
-      const double tapers = input.taper[i] != 0 ? 1 : 0;
-      const double of_bandage = caution * (errors.height[known][i] + errors.height[known + 1][i]) * share[i];
-      poles.part[0][i] *= poles.fall[0][i];
-      poles.part[1][i] *= poles.fall[1][i];
-      height[n][i] = tapers * (of_bandage + poles.part[0][i] + poles.part[1][i]);
-      // A term that is small by chance is not trusted.
-      const double by_neighbours = 0.2 * std::sqrt(errors.wall[known - 1][i] * errors.wall[known + 1][i]);
-      const double of_wall = larger(errors.wall[known][i], by_neighbours) + errors.wall[known + 1][i];
-      wall[n][i] = caution_of_wall * share[i] * of_wall;
-    }
-  }
   GAITER_EACH {
-    const double sum = compliance[i] + first_order[i] + height[1][i] + wall[1][i] + volume_factor[i];
+    tapers_[i] = input.taper[i] != 0 ? 1 : 0;
+    const double sum = compliance[i] + first_order[i] + volume_factor[i] + share_[i] + errors_.height[1][i] +
+                       errors_.height[2][i] + errors_.wall[0][i] + errors_.wall[1][i] + errors_.wall[2][i] +
+                       poles_.part[0][i] + poles_.part[1][i];
     sure[i] *= sum < 1e300 ? 1.0 : 0.0;
   }
+}
+
+double QuickForecast::height_error(int place, int points) const {
+  const int known = points < forecast_points ? points : forecast_points;
+  const double of_bandage =
+      caution * (errors_.height[known][place] + errors_.height[known + 1][place]) * share_[place];
+  double of_leg[2] = {poles_.part[0][place], poles_.part[1][place]};
+  for (int n = 0; n < points; ++n)
+    for (int k = 0; k < 2; ++k) of_leg[k] *= poles_.fall[k][place];
+  return tapers_[place] * (of_bandage + of_leg[0] + of_leg[1]);
+}
+
+double QuickForecast::wall_error(int place, int points) const {
+  const int known = points < forecast_points ? points : forecast_points;
+  const double before = errors_.wall[known - 1][place], here = errors_.wall[known][place],
+               after = errors_.wall[known + 1][place];
+  // A term that is small by chance is not trusted.
+  const double by_neighbours = 0.2 * std::sqrt(before * after);
+  return caution_of_wall * share_[place] * (larger(here, by_neighbours) + after);
 }
 
 }  // namespace gaiter::physics

@@ -73,8 +73,8 @@ struct QuickSegment {
   bool sure() const { return pack.sure[place] > 0; }
   double compliance_error() const { return pack.compliance[place]; }
   double first_order_error() const { return pack.first_order[place]; }
-  double height_error(int slices) const { return pack.height[slices][place]; }
-  double wall_error(int points) const { return pack.wall[points][place]; }
+  double height_error(int slices) const { return pack.height_error(place, slices); }
+  double wall_error(int points) const { return pack.wall_error(place, points); }
   double drop_factor() const { return pack.drop_factor[place]; }
   double volume_factor() const { return pack.volume_factor[place]; }
 };

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-2-Clause
 #pragma once
 
-#include <array>
-
 #include "gaiter/physics/forecast_kernel.hpp"
 
 namespace gaiter::physics {
@@ -13,16 +11,26 @@ namespace gaiter::physics {
 // second derivative there; under voltage that step starts from the state at rest, less what of the relief the
 // leg's giving way leaves. Where `sure` is 0 the other numbers mean nothing. What a segment gets does not
 // depend on the others. Tested in tests/auto_model.cpp against SegmentForecast.
-struct QuickForecast {
+class QuickForecast {
+ public:
   static constexpr int most_points = 12;  // over the height or through the wall
 
-  Pack sure;                                       // 1 or 0
-  Pack compliance, first_order;                    // errors of the rigid leg, of the first-order correction
-  Pack drop_factor, volume_factor;                 // as SegmentForecast's
-  std::array<Pack, most_points + 1> height, wall;  // errors of Gauss rules; entry n: n points
+  Pack sure;                        // 1 or 0
+  Pack compliance, first_order;     // errors of the rigid leg, of the first-order correction
+  Pack drop_factor, volume_factor;  // as SegmentForecast's
+
+  // Errors of Gauss rules of so many points; few are ever asked for.
+  double height_error(int place, int points) const;
+  double wall_error(int place, int points) const;
 
   // `rest`, `actuated`: 1 where that state's pressure counts, else 0.
   void analyse(const ForecastInput& input, const Pack& rest, const Pack& actuated);
+
+ private:
+  Pack tapers_;  // 1 or 0
+  Pack share_;   // the most that an error of the rigid leg's pressure counts for [1/Pa]
+  LegPoles poles_;
+  ForecastErrors errors_;
 };
 
 }  // namespace gaiter::physics
