@@ -242,6 +242,27 @@ TEST(Auto, GoesByTheWantedOutput) {
   EXPECT_NE(solvers::plan_segment(scene, 2).fidelity, Fidelity::rigid);
 }
 
+// The drop is a small part of the pressures, and its relative error so much larger.
+TEST(Auto, TellsTheErrorOfTheWantedOutput) {
+  for (const double accuracy : {0.1, 1e-2, 1e-3, 1e-4}) {
+    model::Scene scene = paper::scene(2.2, 3e3);
+    scene.goal.up_to = Fidelity::slice;
+    scene.goal.accuracy = accuracy;
+    scene.goal.actuation_drop = true;
+    scene.goal.pressure_rest = scene.goal.pressure_actuated = false;
+    for (std::size_t segment = 0; segment < 6; ++segment) {
+      const SegmentTask task{&scene, segment};
+      solvers::AutoModel model(PETSC_COMM_SELF);
+      const model::SegmentResult found = model.solve({&task, 1})[0];
+      const double truth = resolved(scene, segment).actuation_drop;
+      const double error = std::fabs(found.actuation_drop / truth - 1);
+      const double told = found.discretisation_error + model.plans()[0].expected_model_error();
+      EXPECT_LE(error, told) << accuracy << ", segment " << segment;
+      EXPECT_LE(told, 1.01 * accuracy) << accuracy << ", segment " << segment;
+    }
+  }
+}
+
 // Beyond slices: what sliding changes on the paper's ankle is more than 1 % at 2.2 and less than 5 % at 1.4;
 // there finite elements are only needed for less than what the ends of a cone change.
 TEST(Auto, SlidesWhereItMatters) {

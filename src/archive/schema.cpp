@@ -76,28 +76,27 @@ constexpr std::array table{
         "largest voltage reached on the branch of stable states that starts at rest; the module's own where "
         "the state under voltage was found",
         &Row::voltage_stable},
-    Column{
-        "error_estimate", "1",
-        "estimated relative error of the pressures: discretisation_error, plus model_error where it is known",
-        &Row::error_estimate},
+    Column{"error_estimate", "1",
+           "estimated relative error of the pressures (by -fidelity auto: of the wanted output where it is "
+           "largest): "
+           "discretisation_error, plus model_error where it is known",
+           &Row::error_estimate},
     Column{"discretisation_error", "1",
-           "estimated relative error of the pressures against the same model fully resolved",
+           "estimated relative error, of what error_estimate is of, against the same model fully resolved",
            &Row::discretisation_error},
-    Column{
-        "model_error", "1",
-        "estimated relative change of the pressures by the models beyond this one, as far as known: the leg "
-        "that gives way, the bandage that slides; NaN where unknown",
-        &Row::model_error},
+    Column{"model_error", "1",
+           "estimated relative change of the same by the models beyond this one, as far as known: the leg "
+           "that gives way, the bandage that slides; NaN where unknown",
+           &Row::model_error},
     Column{
         "planned_discretisation_error", "1",
         "what -fidelity auto expected of discretisation_error when it chose the model; NaN where that shows "
         "only when solved",
         &Row::planned_discretisation_error, true},
-    Column{
-        "planned_model_error", "1",
-        "relative error of the pressures, against the finest model allowed, that -fidelity auto expected of "
-        "the model when it chose it",
-        &Row::planned_model_error, true},
+    Column{"planned_model_error", "1",
+           "relative error, against the finest model allowed, that -fidelity auto expected of "
+           "the model when it chose it",
+           &Row::planned_model_error, true},
     Column{"planned_cost", "s",
            "processor time that -fidelity auto expected of the segment when it chose the model",
            &Row::planned_cost, true},

@@ -357,9 +357,14 @@ std::span<const model::SegmentResult> AutoModel::solve(std::span<const SegmentTa
     const auto foreseen = [&](double error) {
       return std::isfinite(error) ? model::rounded_up(error) : none;
     };
-    result.planned_discretisation_error = foreseen(plan.height_error + plan.wall_error);
-    result.planned_model_error = foreseen(plan.model_error);
+    result.planned_discretisation_error = foreseen(plan.expected_discretisation_error());
+    result.planned_model_error = foreseen(plan.expected_model_error());
     result.planned_cost = model::rounded_up(plan.cost - plan.unforeseen);
+    if (plan.factor > 1 && model::trustworthy(result.status)) {
+      result.discretisation_error *= plan.factor;
+      result.model_error *= plan.factor;
+      model::derive_error(result);
+    }
     if (plan.actuated) continue;
     for (double* value : {&result.pressure_actuated, &result.pressure_actuated_rigid,
                           &result.pressure_actuated_area_mean, &result.pressure_actuated_change,

@@ -48,8 +48,8 @@ std::string one_design(const model::Scene& scene) {
   for (std::size_t i = 0; i < scene.leg.segments.size(); ++i) {
     if (!scene.wants(i)) continue;
     const SlicePlan plan = solvers::plan_segment(scene, i);
-    text += line(scene.leg.segments[i], plan.fidelity, resolution(plan), plan.height_error + plan.wall_error,
-                 plan.model_error, plan.cost);
+    text += line(scene.leg.segments[i], plan.fidelity, resolution(plan), plan.expected_discretisation_error(),
+                 plan.expected_model_error(), plan.cost);
   }
   return text;
 }

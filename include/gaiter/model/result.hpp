@@ -58,8 +58,9 @@ struct SegmentResult {
   // Largest voltage reached on the branch of stable states that starts at rest: the module's own where the
   // actuated state was found, NaN where the model does not follow that branch to its end [V].
   double voltage_stable = 0;
+  // Of the pressures; by -fidelity auto of the wanted output where they are largest.
   double error_estimate = 0;        // discretisation_error, plus model_error where that is known [1]
-  double discretisation_error = 0;  // relative, of the pressures, against the same model resolved [1]
+  double discretisation_error = 0;  // relative, against the same model resolved [1]
   double model_error = 0;  // what the models beyond this one would change, as far as known; NaN: unknown [1]
   // What -fidelity auto expected when it chose the model; NaN: not known beforehand, or nothing was chosen.
   double planned_discretisation_error = std::numeric_limits<double>::quiet_NaN();  // relative [1]

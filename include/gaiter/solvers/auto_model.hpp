@@ -24,8 +24,8 @@ double plan_cost(const model::Scene& scene, std::size_t segment, const SlicePlan
 
 // Segments that each go by their plan. Slices whose own pressures, once solved, tell of a larger error than
 // the goal allows are solved again with more of them, and likewise sliding slices and finite elements (whose
-// mesh is refined); what is not wanted is not computed and NaN. Results do not depend on what else is in a
-// batch.
+// mesh is refined); what is not wanted is not computed and NaN. Errors in results are those of the wanted
+// output where they are largest. Results do not depend on what else is in a batch.
 class AutoModel {
  public:
   // `group`: ranks that share finite element meshes; everything else each rank solves by itself.

@@ -36,6 +36,10 @@ struct SlicePlan {
   bool actuated = true;        // false: the state under voltage is not wanted
   bool confirm = false;        // of sliding slices: their error is still to be found, from their residual
   bool stable_nearby = false;  // the residual of the slices has found stable states of finite elements
+
+  // Of the wanted output where they are largest.
+  double expected_discretisation_error() const { return factor * (height_error + wall_error); }
+  double expected_model_error() const { return factor * model_error; }
 };
 
 // One segment of one design.
