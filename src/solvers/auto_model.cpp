@@ -152,7 +152,6 @@ bool choose_model(const model::Scene& scene, const model::Goal& goal, double acc
       plan.model_error = first;
     }
   }
-  plan.change_beyond += plan.model_error;
   plan.tolerance = tolerance - plan.model_error;
   return choose_points(forecast, plan);
 }
@@ -163,7 +162,6 @@ SlicePlan plan_for(const model::Scene& scene, std::size_t segment, SegmentForeca
   forecast.want(goal.pressure_rest || goal.actuation_drop, goal.actuated());
   SlicePlan plan;
   plan.cuts = forecast.cuts();
-  plan.change_beyond = forecast.sliding_error();
   const bool contact = plan.cuts.empty() && !forecast.open_everywhere();
   choose_model(scene, goal, accuracy, forecast, contact, plan);
   plan.cost = cost_of_quick_forecast + cost_of_forecast + plan_cost(scene, segment, plan);
@@ -222,7 +220,6 @@ void plan_segments(std::span<const SegmentTask> tasks, std::vector<SlicePlan>& p
       SlicePlan& plan = plans[first + place];
       const QuickSegment forecast{quick, place};
       plan.cuts.clear();
-      plan.change_beyond = 0;
       if (!beyond && forecast.sure() &&
           choose_model(*scene, scene->goal.of(segment), accuracy_of_slices(scene->goal), forecast, true,
                        plan)) {
