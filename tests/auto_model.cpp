@@ -73,8 +73,8 @@ TEST(Forecast, QuickOneAgreesWithTheFullOne) {
   for (int i = 0; i < physics::pack_width; ++i) counts[i] = 1;
   for (const double stretch : {1.2, 1.4, 1.8, 2.2}) {
     const model::Scene scene = paper::scene(stretch, 5e3);
-    physics::ForecastInput input;
-    physics::QuickForecast quick;
+    physics::ForecastInput<double> input;
+    physics::QuickForecast<double> quick;
     input.start(scene);
     for (int segment = 0; segment < 6; ++segment)
       input.set(segment, scene, static_cast<std::size_t>(segment));
@@ -95,8 +95,8 @@ TEST(Forecast, QuickOneAgreesWithTheFullOne) {
       }
     }
   }
-  physics::ForecastInput input;
-  physics::QuickForecast quick;
+  physics::ForecastInput<double> input;
+  physics::QuickForecast<double> quick;
   const model::Scene open = part_open();
   input.start(open);
   input.set(0, open, 0);

@@ -3,11 +3,9 @@
 
 #include <algorithm>
 #include <limits>
-#include <utility>
 
-#include "gaiter/physics/forecast_laws.hpp"
+#include "gaiter/physics/forecast_errors.hpp"
 #include "gaiter/physics/leg_law.hpp"
-#include "gaiter/physics/quadrature.hpp"
 #include "gaiter/physics/slice_system.hpp"
 
 namespace gaiter::physics {
@@ -23,8 +21,9 @@ constexpr int most_steps = 8;  // of Newton's method for a forecast
 // P_m, Eq. (4), and with `voltage` less P_a, Eq. (8); their slope over the logarithm of the leg's radius. The
 // radius is that of the segment times (1 + `wider`). By two Gauss points through the wall.
 using WallRatios = std::array<Pack, 2>;  // A^2/s
+using Input = ForecastInput<double>;
 
-GAITER_INLINE void pressing(const ForecastInput& input, const WallRatios& wall, bool voltage,
+GAITER_INLINE void pressing(const Input& input, const WallRatios& wall, bool voltage,
                             const Pack& wider, Pack& pressure, Pack& slope, Pack& passive) {
   Pack swell, x, stress, stress_slope, inverse;
   GAITER_EACH {
@@ -40,7 +39,7 @@ GAITER_INLINE void pressing(const ForecastInput& input, const WallRatios& wall, 
       inverse[i] = 1 / (1 + square);
       stress[i] = stress_slope[i] = 0;
     }
-    for (const ForecastInput::Term& term : input.terms) {
+    for (const Input::Term& term : input.terms) {
       GAITER_EACH {
         const double power = exp(clamped(term.alpha[i] * x[i])), reciprocal = 1 / power;
         const double sine = 0.5 * (power - reciprocal);
@@ -71,7 +70,7 @@ GAITER_INLINE void pressing(const ForecastInput& input, const WallRatios& wall, 
 
 // Safeguarded Newton's method for the equilibrium of a slice whose radius is 1 + `outline` times the
 // segment's, where `open`; until it is known to a fiftieth of its distance from `first`, or after some steps.
-GAITER_INLINE void equilibrium(const ForecastInput& input, const WallRatios& wall, bool voltage, Pack& open,
+GAITER_INLINE void equilibrium(const Input& input, const WallRatios& wall, bool voltage, Pack& open,
                                ForecastState& s) {
   Pack low, high, wider, found, slope, passive, strain, response;
   GAITER_EACH {
@@ -113,13 +112,15 @@ GAITER_INLINE void equilibrium(const ForecastInput& input, const WallRatios& wal
 
 }  // namespace
 
-void ForecastInput::start(const model::Scene& scene) {
+template <typename Number>
+void ForecastInput<Number>::start(const model::Scene& scene) {
   material = scene.leg.material;
   terms.resize(scene.bandage.ogden.size());
   energised = false;
 }
 
-void ForecastInput::set(int lane, const model::Scene& scene, std::size_t segment) {
+template <typename Number>
+void ForecastInput<Number>::set(int lane, const model::Scene& scene, std::size_t segment) {
   const model::Segment& part = scene.leg.segments[segment];
   const model::Bandage& bandage = scene.bandage;
   const model::Module& module = bandage.modules[segment];
@@ -155,35 +156,57 @@ void ForecastInput::set(int lane, const model::Scene& scene, std::size_t segment
   }
 }
 
-GAITER_MULTIVERSION
-void ForecastInput::close(int count) {
-  for (Pack* row = &mean_radius; row <= &leg[3]; ++row)
+namespace {
+
+template <typename Number>
+GAITER_INLINE void finish(ForecastInput<Number>& input, int count) {
+  auto &leg = input.leg, &gap = input.gap;
+  for (auto* row = &input.mean_radius; row <= &leg[3]; ++row)
     for (int i = count; i < pack_width; ++i) (*row)[i] = (*row)[count - 1];
-  for (Term& term : terms)
+  for (auto& term : input.terms)
     for (int i = count; i < pack_width; ++i) {
       term.mu[i] = term.mu[count - 1];
       term.alpha[i] = term.alpha[count - 1];
     }
-  const double law = material == model::LegMaterial::compliance ? 1 : 0;
+  const bool law = input.material == model::LegMaterial::compliance;
   GAITER_EACH {
-    const double inner = 1 / inner_radius[i], wall = thickness[i] * inner, field = voltage[i] * inner;
-    const double slack = gap[i] / mean_radius[i];  // strain of the leg
+    const Number inner = 1 / input.inner_radius[i], wall = input.thickness[i] * inner;
     gap[i] *= inner;
-    leg_radius[i] = mean_radius[i] * inner;
-    area[i] = wall * (2 + wall);
-    log_area[i] = log1p(area[i]);
-    middle[i] = 1 / std::sqrt(1 + area[i]);
-    taper[i] = 0.5 * rise[i] / mean_radius[i];
-    drive[i] = 2 * electric[i] * field * field;
-    pressure_limit[i] = law > 0
-                            ? strain_law_pressure_bound(leg[0][i], leg[0][i] + leg[2][i], slack) / leg[1][i]
-                            : neo_hookean_pressure_bound(leg[0][i], leg[1][i], slack);
+    input.leg_radius[i] = input.mean_radius[i] * inner;
+    input.area[i] = wall * (2 + wall);
+    input.middle[i] = 1 / std::sqrt(1 + input.area[i]);
+    const Number over = 1 / input.mean_radius[i], field = input.voltage[i] * inner;
+    input.taper[i] = 0.5f * input.rise[i] * over;
+    input.drive[i] = 2 * input.electric[i] * field * field;
+    input.slack[i] = gap[i] * input.inner_radius[i] * over;
   }
+  log1p_each(input.area, input.log_area);
+  if (law) GAITER_EACH {
+      const Number none = leg[0][i] + leg[2][i];
+      input.pressure_limit[i] = strain_law_pressure_bound(leg[0][i], none, input.slack[i]) / leg[1][i];
+    }
+  else
+    GAITER_EACH input.pressure_limit[i] = neo_hookean_pressure_bound(leg[0][i], leg[1][i], input.slack[i]);
 }
+
+}  // namespace
+
+template <>
+GAITER_MULTIVERSION void ForecastInput<double>::close(int count) {
+  finish(*this, count);
+}
+
+template <>
+GAITER_MULTIVERSION void ForecastInput<float>::close(int count) {
+  finish(*this, count);
+}
+
+template struct ForecastInput<double>;
+template struct ForecastInput<float>;
 
 // The first order is the start that slices have (start_at_rest).
 GAITER_MULTIVERSION
-void forecast_state(const ForecastInput& input, bool voltage, const ForecastState* rest, ForecastState& s) {
+void forecast_state(const ForecastInput<double>& input, bool voltage, const ForecastState* rest, ForecastState& s) {
   Pack wider, unused, none, open, found, slope;
   // Gauss-Legendre, 2 points on (0, 1).
   constexpr std::array<double, 2> nodes{0.21132486540518713, 0.78867513459481287};
@@ -235,104 +258,13 @@ void forecast_state(const ForecastInput& input, bool voltage, const ForecastStat
   find_poles(input, s.pressure, s.slope, s.response, s.poles);
 }
 
-namespace {
-
-constexpr int wall_derivatives = 6;
-
-// Through the wall, over t = ln(B.../A) of the reference radius squared, a power m of w = 1/lambda^2 obeys
-//   d/dt sum_j c_j w^(m+j) = L sum_j (m+j) c_j (w^(m+j) - w^(m+j+1)),
-// exactly. Here c_j stands for c_j w^j, and all are divided by L; there are `order` of them before.
-template <int order>
-GAITER_INLINE void differentiate(double (&c)[wall_derivatives + 1], double m, double w) {
-  [&]<int... back>(std::integer_sequence<int, back...>) {
-    ((c[order - back] =
-          (back > 0 ? (m + (order - back)) * c[order - back] : 0.0) -
-          (back < order ? (m + (order - back - 1)) * c[order - back - (back < order)] * w : 0.0)),
-     ...);
-  }
-  (std::make_integer_sequence<int, order + 1>{});
-}
-
-}  // namespace
-
-// Over the height a term of the pressure is taken for a power of the radius.
 GAITER_MULTIVERSION
-void forecast_errors(const ForecastInput& input, const Pack& strain, ForecastErrors& errors) {
-  constexpr int rules = forecast_points + 2;
-  static const auto constants = [] {
-    std::array<double, rules> all{};
-    for (int n = 1; n < rules; ++n) all[n] = gauss_error_constant(n);
-    return all;
-  }();
-  std::array<Pack, wall_derivatives / 2 + 1> through;  // even derivatives through the wall
-  std::array<Pack, rules>& height = errors.height;
-  Pack x, w, share;
-  GAITER_EACH {
-    const double radius = 1 + input.gap[i] - input.leg_radius[i] * strain[i];
-    const double swell = radius * radius - 1, middle = input.middle[i];
-    const double square = larger(swell * middle, -0.999);
-    x[i] = 0.5 * log1p(square);
-    w[i] = 1 / (1 + square);
-    // d ln lambda / d ln R at mid-wall.
-    share[i] = radius * middle * w[i] * input.leg_radius[i] * (1 - strain[i]);
-    through[0][i] = through[1][i] = through[2][i] = through[3][i] = 0;
-  }
-  for (Pack& rule : height) GAITER_EACH rule[i] = 0;
-  for (const ForecastInput::Term& term : input.terms) {
-    Pack power;
-    GAITER_EACH power[i] = exp(clamped(term.alpha[i] * x[i]));
-    for (const double sign : {1.0, -1.0}) {
-      Pack size;
-      GAITER_EACH {
-        const double here = sign > 0 ? power[i] : -1 / power[i];
-        size[i] = 0.5 * term.mu[i] * input.log_area[i] * w[i] * here;
-      }
-      GAITER_EACH {
-        const double m = 1 - 0.5 * sign * term.alpha[i], square = input.log_area[i] * input.log_area[i];
-        double c[wall_derivatives + 1] = {size[i]};
-        through[0][i] += c[0];
-        differentiate<1>(c, m, w[i]);
-        differentiate<2>(c, m, w[i]);
-        through[1][i] += square * (c[0] + c[1] + c[2]);
-        differentiate<3>(c, m, w[i]);
-        differentiate<4>(c, m, w[i]);
-        through[2][i] += square * square * (c[0] + c[1] + c[2] + c[3] + c[4]);
-        differentiate<5>(c, m, w[i]);
-        differentiate<6>(c, m, w[i]);
-        through[3][i] += square * square * square * (c[0] + c[1] + c[2] + c[3] + c[4] + c[5] + c[6]);
-      }
-      GAITER_EACH {
-        const double exponent = (sign * term.alpha[i] - 2) * share[i];
-        const double span = 4 * input.taper[i] * input.taper[i];
-        double part = size[i];
-        [&]<int... before>(std::integer_sequence<int, before...>) {
-          ((part *= (exponent - 2 * before) * (exponent - 2 * before - 1) * span,
-            height[before + 1][i] += part),
-           ...);
-        }
-        (std::make_integer_sequence<int, rules - 1>{});
-      }
-    }
-  }
-  for (int n = 1; n < rules; ++n) GAITER_EACH height[n][i] = constants[n] * std::fabs(height[n][i]);
-  GAITER_EACH errors.wall[0][i] = std::fabs(through[0][i]);
-  constexpr int last = wall_derivatives / 2;
-  for (int n = 1; n <= last; ++n) GAITER_EACH errors.wall[n][i] = constants[n] * std::fabs(through[n][i]);
-  // Beyond, each fall is taken to be no faster than the last, but for the rule's own constant.
-  Pack ratio;
-  GAITER_EACH {
-    const double one = std::fabs(through[1][i]), two = std::fabs(through[2][i]),
-                 three = std::fabs(through[3][i]);
-    const double a = two > 0 ? three / two : 0, b = one > 0 ? two / one : 0;
-    const double pole = input.log_area[i] * input.log_area[i];
-    ratio[i] = 1.5 * larger(larger(a, b), pole);
-  }
-  for (int n = last + 1; n < rules; ++n)
-    GAITER_EACH errors.wall[n][i] = errors.wall[n - 1][i] * ratio[i] * constants[n] / constants[n - 1];
+void forecast_errors(const ForecastInput<double>& input, const Pack& strain, ForecastErrors<double>& errors) {
+  find_errors(input, strain, errors);
 }
 
 GAITER_MULTIVERSION
-void forecast_sliding(const ForecastInput& input, bool voltage, Pack& change) {
+void forecast_sliding(const ForecastInput<double>& input, bool voltage, Pack& change) {
   Pack x, stretch, push, coupling, axial, difference_slope;  // w_r, w_rz, w_zz, (D/r)' r
   GAITER_EACH {
     const double swell = input.gap[i] * (2 + input.gap[i]);
@@ -340,7 +272,7 @@ void forecast_sliding(const ForecastInput& input, bool voltage, Pack& change) {
     stretch[i] = exp(x[i]);
     push[i] = coupling[i] = axial[i] = difference_slope[i] = 0;
   }
-  for (const ForecastInput::Term& term : input.terms) GAITER_EACH {
+  for (const Input::Term& term : input.terms) GAITER_EACH {
       const double a = term.alpha[i], mu = term.mu[i], up = exp(clamped(a * x[i])), down = 1 / up;
       push[i] += mu * (up - down) / stretch[i];
       coupling[i] += mu * a * down / stretch[i];

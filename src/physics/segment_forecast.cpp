@@ -49,9 +49,9 @@ void SegmentForecast::take(const ForecastState& found, int lane, State& state) c
 
 void SegmentForecast::analyse(std::span<SegmentForecast> forecasts, Depth depth) {
   // Large, so that it is kept for the next batch.
-  thread_local ForecastInput input;
+  thread_local ForecastInput<double> input;
   thread_local ForecastState rest, actuated;
-  thread_local ForecastErrors errors;
+  thread_local ForecastErrors<double> errors;
   if (forecasts.empty()) return;
   for (std::size_t first = 0; first < forecasts.size(); first += pack_width) {
     const auto some = forecasts.subspan(first, std::min<std::size_t>(pack_width, forecasts.size() - first));
@@ -96,7 +96,7 @@ void SegmentForecast::want(bool rest, bool actuated) {
 }
 
 // Heights at which the pressure on a leg without pressure, which decides there, changes its sign.
-void SegmentForecast::find_cuts(const ForecastInput& input, int lane) {
+void SegmentForecast::find_cuts(const ForecastInput<double>& input, int lane) {
   cuts_.clear();
   open_everywhere_ = rest_.lower_end_open && rest_.upper_end_open &&
                      (!energised_ || (actuated_.lower_end_open && actuated_.upper_end_open));
@@ -118,7 +118,7 @@ void SegmentForecast::find_cuts(const ForecastInput& input, int lane) {
     for (int j = 0; j < points_of_cut; ++j) {
       const double square = swell * ratios[j], x = 0.5 * std::log1p(square);
       double stress = 0;
-      for (const ForecastInput::Term& term : input.terms) {
+      for (const auto& term : input.terms) {
         const double power = std::exp(forecast::clamped(term.alpha[lane] * x));
         stress += term.mu[lane] * (power - 1 / power);
       }

@@ -31,6 +31,7 @@ constexpr int most_sliding_slices = 192;
 constexpr int most_refinements = 3;
 constexpr double shares_model = 0.7;  // of the tolerance that the model's error may take
 constexpr double strict_tolerance = 5e-5, strict_share = 0.05;  // likewise, of small ones
+constexpr double least_in_single = 1e-4;  // accuracy for which quick forecasts in single precision do
 constexpr double share_of_slices = 0.3;  // of the goal, for slices that finer models' errors are added to
 
 // Measured on one core of a 2.1 GHz x86-64 server, large batches [s]; of a slice in one state, and of its
@@ -64,10 +65,12 @@ double plan_cost(const model::Scene& scene, std::size_t segment, const SlicePlan
 namespace {
 
 // One segment of a quick forecast, asked like a SegmentForecast.
+template <typename Number>
 struct QuickSegment {
-  static constexpr int most_slices = physics::QuickForecast::most_points, most_wall_points = most_slices;
+  using Pack = physics::QuickForecast<Number>;
+  static constexpr int most_slices = Pack::most_points, most_wall_points = most_slices;
 
-  const physics::QuickForecast& pack;
+  const Pack& pack;
   int place;
 
   bool sure() const { return pack.sure[place] > 0; }
@@ -190,46 +193,62 @@ SlicePlan plan_segment(const model::Scene& scene, std::size_t segment) {
   return plan_for(scene, segment, forecast, higher.asked * plan.factor);
 }
 
-void plan_segments(std::span<const SegmentTask> tasks, std::vector<SlicePlan>& plans) {
+namespace {
+
+// Plans of `chosen` tasks by quick forecasts; those of which these are not sure are added to `doubtful`.
+template <typename Number>
+void plan_quickly(std::span<const SegmentTask> tasks, std::span<const std::size_t> chosen,
+                  std::vector<SlicePlan>& plans, std::vector<std::size_t>& doubtful) {
   // Large, so that it is kept for the next batch.
-  thread_local physics::ForecastInput input;
-  thread_local physics::QuickForecast quick;
-  thread_local std::vector<SegmentForecast> forecasts;
-  thread_local std::vector<std::size_t> doubtful;
-  plans.resize(tasks.size());
-  forecasts.clear();
-  doubtful.clear();
-  for (std::size_t first = 0; first < tasks.size(); first += physics::pack_width) {
-    const int count = static_cast<int>(std::min<std::size_t>(physics::pack_width, tasks.size() - first));
-    physics::Pack rest{}, actuated{};
-    bool beyond = false;
-    input.start(*tasks[first].scene);
+  thread_local physics::ForecastInput<Number> input;
+  thread_local physics::QuickForecast<Number> quick;
+  for (std::size_t first = 0; first < chosen.size(); first += physics::pack_width) {
+    const auto some = chosen.subspan(first, std::min<std::size_t>(physics::pack_width, chosen.size() - first));
+    const int count = static_cast<int>(some.size());
+    physics::PackOf<Number> rest{}, actuated{};
+    input.start(*tasks[some[0]].scene);
     for (int place = 0; place < count; ++place) {
-      const auto& [scene, segment, none] = tasks[first + place];
+      const auto& [scene, segment, none] = tasks[some[place]];
       const model::Goal goal = scene->goal.of(segment);
       const bool voltage = scene->bandage.modules[segment].voltage != 0;
       input.set(place, *scene, segment);
       actuated[place] = goal.actuated() && voltage ? 1 : 0;
       rest[place] = goal.pressure_rest || goal.actuation_drop || actuated[place] == 0 ? 1 : 0;
-      beyond = beyond || goal.up_to != Fidelity::slice;
     }
     input.close(count);
     quick.analyse(input, rest, actuated);
     for (int place = 0; place < count; ++place) {
-      const auto& [scene, segment, none] = tasks[first + place];
-      SlicePlan& plan = plans[first + place];
-      const QuickSegment forecast{quick, place};
+      const auto& [scene, segment, none] = tasks[some[place]];
+      SlicePlan& plan = plans[some[place]];
+      const QuickSegment<Number> forecast{quick, place};
       plan.cuts.clear();
-      if (!beyond && forecast.sure() &&
-          choose_model(*scene, scene->goal.of(segment), accuracy_of_slices(scene->goal), forecast, true,
-                       plan)) {
+      if (forecast.sure() && choose_model(*scene, scene->goal.of(segment), accuracy_of_slices(scene->goal),
+                                          forecast, true, plan))
         plan.cost = cost_of_quick_forecast + plan_cost(*scene, segment, plan);
-      } else {
-        doubtful.push_back(first + place);
-        forecasts.emplace_back(*scene, segment);
-      }
+      else
+        doubtful.push_back(some[place]);
     }
   }
+}
+
+}  // namespace
+
+void plan_segments(std::span<const SegmentTask> tasks, std::vector<SlicePlan>& plans) {
+  thread_local std::vector<std::size_t> roughly, finely, doubtful;
+  thread_local std::vector<SegmentForecast> forecasts;
+  plans.resize(tasks.size());
+  for (auto* chosen : {&roughly, &finely, &doubtful}) chosen->clear();
+  for (std::size_t t = 0; t < tasks.size(); ++t) {
+    const model::Goal& goal = tasks[t].scene->goal;
+    (goal.up_to != Fidelity::slice             ? doubtful
+     : goal.accuracy >= least_in_single ? roughly
+                                               : finely)
+        .push_back(t);
+  }
+  plan_quickly<float>(tasks, roughly, plans, doubtful);
+  plan_quickly<double>(tasks, finely, plans, doubtful);
+  forecasts.clear();
+  for (const std::size_t t : doubtful) forecasts.emplace_back(*tasks[t].scene, tasks[t].segment);
   SegmentForecast::analyse(forecasts);
   for (std::size_t k = 0; k < doubtful.size(); ++k) {
     const SegmentTask& task = tasks[doubtful[k]];

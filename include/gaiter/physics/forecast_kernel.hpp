@@ -13,8 +13,10 @@ namespace gaiter::physics {
 
 constexpr int forecast_points = 8;  // over the height, and through the wall, for which errors are worked out
 
-// Given of each segment.
+// Given of each segment, in double or single precision.
+template <typename Number>
 struct ForecastInput {
+  using Pack = PackOf<Number>;
   struct Term {
     Pack mu, alpha;  // [Pa, 1]
   };
@@ -33,7 +35,8 @@ struct ForecastInput {
   Pack area, log_area;     // (B^2 - A^2)/A^2, ln(B^2/A^2)
   Pack taper;              // half the difference of the end radii over the mean radius
   Pack drive;              // 2 eps V^2/A^2, layers as if the field were the same in all [Pa]
-  Pack pressure_limit;     // beyond which the bandage is slack [Pa]
+  Pack slack;              // strain of the leg that leaves the bandage slack
+  Pack pressure_limit;     // and the pressure, about [Pa]
   Pack middle;             // A^2/s at mid-wall
   bool energised = false;  // there is a voltage somewhere
 
@@ -46,30 +49,32 @@ struct ForecastInput {
 
 // Of the pressure over the height, by the two exponentials of the leg's law: the error of n points is part
 // fall^n.
+template <typename Number>
 struct LegPoles {
-  std::array<Pack, 2> part, fall;
+  std::array<PackOf<Number>, 2> part, fall;
 };
 
 // Of one state, at rest or under voltage; see SegmentForecast::State.
 struct ForecastState {
   Pack rigid, first, pressure, passive, slope, gain, strain, response;
-  LegPoles poles;
+  LegPoles<double> poles;
   Pack narrow_net, wide_net;  // at the ends, on the leg without pressure; negative: open
 };
 
 // Error of a Gauss rule for the mean of the pressure, leading order and, for more than some points, the size
 // it has at most: over the height (as if the leg were rigid), and through the wall. Entry n: n points.
+template <typename Number>
 struct ForecastErrors {
-  std::array<Pack, forecast_points + 2> height, wall;  // [Pa]
+  std::array<PackOf<Number>, forecast_points + 2> height, wall;  // [Pa]
 };
 
 // Pressure by two points through the wall; the leg's strain from a few Newton steps. `rest`: the state
 // without voltage, if it is known, to start from.
-void forecast_state(const ForecastInput& input, bool voltage, const ForecastState* rest,
+void forecast_state(const ForecastInput<double>& input, bool voltage, const ForecastState* rest,
                     ForecastState& state);
 
 // At a strain of the leg.
-void forecast_errors(const ForecastInput& input, const Pack& strain, ForecastErrors& errors);
+void forecast_errors(const ForecastInput<double>& input, const Pack& strain, ForecastErrors<double>& errors);
 
 // Relative change of the mean pressure if the tube slides (or, held, lies on the slope); NaN: beyond the
 // first order. Thin wall, leg that does not give way. With w(r, z') the tube's energy per reference height,
@@ -79,6 +84,6 @@ void forecast_errors(const ForecastInput& input, const Pack& strain, ForecastErr
 // by
 //   - m^2 H^2 D (D/r)' / (12 w_zz).
 // The slope itself stretches the tube by sqrt(1 + m^2) along the meridian: w_rz (sqrt(1 + m^2) - 1) / r.
-void forecast_sliding(const ForecastInput& input, bool voltage, Pack& change);
+void forecast_sliding(const ForecastInput<double>& input, bool voltage, Pack& change);
 
 }  // namespace gaiter::physics

@@ -1,71 +1,104 @@
 // SPDX-License-Identifier: BSD-2-Clause
 #pragma once
 
+#include <cmath>
+#include <limits>
+
 #include "gaiter/physics/forecast_kernel.hpp"
 
-// What the forecasts' loops over packs have in common.
+// What the forecasts' loops over packs have in common. Constants are written as floats, which numbers of
+// either precision take without a conversion of their own.
 namespace gaiter::physics::forecast {
 
 #define GAITER_EACH for (int i = 0; i < pack_width; ++i)
 #define GAITER_INLINE inline __attribute__((always_inline))
 
-constexpr double largest_exponent = 300;
+template <typename Number>
+constexpr Number largest_exponent = sizeof(Number) == sizeof(double) ? 300 : 80;
+template <typename Number>
+constexpr Number least = 1 / std::numeric_limits<Number>::max();
 
 // Of an estimate of the leading order; of one for the leg's law, whose poles are known but for their
 // strength.
-constexpr double caution = 2;
-constexpr double caution_of_leg = 2;
-constexpr double caution_of_wall = 1.2;
-constexpr double caution_of_mean = 1.3;  // where the value at mid-height stands for the mean over the height
+constexpr float caution = 2;
+constexpr float caution_of_leg = 2;
+constexpr float caution_of_wall = 1.2f;
+constexpr float caution_of_mean = 1.3f;  // where the value at mid-height stands for the mean over the height
 
-GAITER_INLINE double clamped(double x) {
-  const double below = x < largest_exponent ? x : largest_exponent;
-  return below > -largest_exponent ? below : -largest_exponent;
+template <typename Number>
+GAITER_INLINE Number clamped(Number x) {
+  const Number below = x < largest_exponent<Number> ? x : largest_exponent<Number>;
+  return below > -largest_exponent<Number> ? below : -largest_exponent<Number>;
 }
 
-GAITER_INLINE double larger(double a, double b) {
+template <typename Number>
+GAITER_INLINE Number larger(Number a, Number b) {
   return a > b ? a : b;
 }
 
+// Each in a loop by itself: a call among other work would have all registers saved around it.
+template <typename Number>
+GAITER_INLINE void exp_each(const PackOf<Number>& x, PackOf<Number>& out) {
+  GAITER_EACH out[i] = std::exp(x[i]);
+}
+
+template <typename Number>
+GAITER_INLINE void log_each(const PackOf<Number>& x, PackOf<Number>& out) {
+  GAITER_EACH out[i] = std::log(x[i]);
+}
+
+template <typename Number>
+GAITER_INLINE void log1p_each(const PackOf<Number>& x, PackOf<Number>& out) {
+  GAITER_EACH out[i] = std::log1p(x[i]);
+}
+
 // The leg's strain, its derivative, and how fast that one changes.
-GAITER_INLINE void strain_law(const ForecastInput& input, const Pack& pressure, Pack& strain,
-                              Pack& response) {
+template <typename Number>
+GAITER_INLINE void strain_law(const ForecastInput<Number>& input, const PackOf<Number>& pressure,
+                              PackOf<Number>& strain, PackOf<Number>& response) {
   const auto& leg = input.leg;
   if (input.material == model::LegMaterial::neo_hookean) {
-    Pack y;
+    PackOf<Number> y;
     GAITER_EACH y[i] = 1;  // (r/R_c)^2
     for (int k = 0; k < 4; ++k) GAITER_EACH {
-        const double low = y[i] > 0.05 ? y[i] : 0.05;
-        y[i] = 1 - pressure[i] / (leg[0][i] + leg[1][i] * exp(-5.0 / 3 * log(low)));
+        const Number low = larger(y[i], Number(0.05f));
+        y[i] = 1 - pressure[i] / (leg[0][i] + leg[1][i] * std::exp(std::log(low) * Number(-5.0 / 3)));
       }
     GAITER_EACH {
-      const double ratio = std::sqrt(y[i] > 0.05 ? y[i] : 0.05);
+      const Number ratio = std::sqrt(larger(y[i], Number(0.05f)));
       strain[i] = 1 - ratio;
-      response[i] = 0.5 / (leg[2][i] * ratio);
+      response[i] = 0.5f / (leg[2][i] * ratio);
     }
     return;
   }
+  PackOf<Number> grown, decayed;
   GAITER_EACH {
-    const double raised = leg[1][i] * pressure[i];
-    const double grown = leg[0][i] * exp(raised < 100 ? raised : 100.0);
-    const double decayed = leg[2][i] * exp(leg[3][i] * pressure[i]);
-    strain[i] = grown + decayed;
-    response[i] = leg[1][i] * grown + leg[3][i] * decayed;
+    grown[i] = clamped(leg[1][i] * pressure[i]);
+    decayed[i] = clamped(leg[3][i] * pressure[i]);
+  }
+  exp_each(grown, grown);
+  exp_each(decayed, decayed);
+  GAITER_EACH {
+    const Number growing = leg[0][i] * grown[i], decaying = leg[2][i] * decayed[i];
+    strain[i] = growing + decaying;
+    response[i] = leg[1][i] * growing + leg[3][i] * decaying;
   }
 }
 
 // Relief P_a, Eq. (8), by the voltage, and its slope over the logarithm of the leg's radius. `swell`: (r^2 -
 // A^2)/A^2; `rate`: d r / d ln R over A.
-GAITER_INLINE void relieving(const ForecastInput& input, const Pack& swell, const Pack& rate, Pack& relief,
-                             Pack& slope) {
+template <typename Number>
+GAITER_INLINE void relieving(const ForecastInput<Number>& input, const PackOf<Number>& swell,
+                             const PackOf<Number>& rate, PackOf<Number>& relief, PackOf<Number>& slope) {
+  PackOf<Number> log_wall;
+  GAITER_EACH log_wall[i] = input.area[i] / larger(1 + swell[i], Number(1e-6f));
+  log1p_each(log_wall, log_wall);
   GAITER_EACH {
-    const double area = input.area[i];
-    const double inner = larger(1 + swell[i], 1e-6), outer = inner + area;
-    const double log_wall = log1p(area / inner);
-    const double share = 1 / (inner * outer * log_wall);
-    const double here = input.drive[i] * area * share / log_wall;
+    const Number area = input.area[i], inner = larger(1 + swell[i], Number(1e-6f)), outer = inner + area;
+    const Number share = 1 / (inner * outer * log_wall[i]);
+    const Number here = input.drive[i] * area * share * share * inner * outer;
     relief[i] = here;
-    slope[i] = here * (2 * area * share - 1 / inner - 1 / outer) * 2 * std::sqrt(inner) * rate[i];
+    slope[i] = here * share * (2 * area - (inner + outer) * log_wall[i]) * 2 * std::sqrt(inner) * rate[i];
   }
 }
 
@@ -75,43 +108,65 @@ GAITER_INLINE void relieving(const ForecastInput& input, const Pack& swell, cons
 // in half heights this is (-ln g - 1 - g + s +- i pi)/u away, u = d slope d ln R, where s is what the other
 // exponential's gain adds: d times its integral over the pressure, which counts for the second one only. The
 // part that the singularity has in the pressure is 1/|d|.
-GAITER_INLINE void find_pole(double gain, double log_gain, double added, double rate, double pressure,
-                             double slope, double taper, double& part, double& fall) {
-  const double steep = std::fabs(rate * slope * taper), least = 1e-9;
-  const bool exists = gain > 1e-300 && pressure > 0;
-  const double span = 1 / (steep > least ? steep : least);
-  const double x = span * (log_gain + 1 + gain - added), y = span * M_PI;
-  // |z + sqrt(z^2 - 1)| by the sum of the distances of z from -1 and 1.
-  const double sum = 0.5 * (std::sqrt((x + 1) * (x + 1) + y * y) + std::sqrt((x - 1) * (x - 1) + y * y));
-  const double beyond = sum * sum - 1;
-  const double ellipse = sum + std::sqrt(beyond > 0 ? beyond : 0.0);
+template <typename Number>
+GAITER_INLINE void find_pole(Number gain, Number log_gain, Number added, Number rate, Number pressure,
+                             Number slope, Number taper, Number& part, Number& fall) {
+  const Number steep = std::fabs(rate * slope * taper);
+  const bool exists = gain > least<Number> && pressure > 0;
+  const Number span = 1 / larger(steep, Number(1e-9f));
+  const Number x = span * (log_gain + 1 + gain - added), y = span * Number(M_PI);
+  // The ellipse's half axes a and b by the distances of z from -1 and 1, of sum 2 a; of it, (a + b)^2 counts.
+  const Number left = (x + 1) * (x + 1) + y * y, right = (x - 1) * (x - 1) + y * y;
+  const Number square = 0.25f * (left + right) + 0.5f * std::sqrt(left * right);  // a^2
+  const Number ellipse = 2 * square - 1 + 2 * std::sqrt(square * larger(square - 1, Number(0)));
   part = exists ? caution_of_leg / std::fabs(rate * pressure) : 0;
-  fall = exists ? 1 / (ellipse * ellipse) : 0;
+  fall = exists ? 1 / ellipse : 0;
 }
 
-GAITER_INLINE void find_poles(const ForecastInput& input, const Pack& pressure, const Pack& slope,
-                              const Pack& response, LegPoles& poles) {
+template <typename Number>
+GAITER_INLINE void find_poles(const ForecastInput<Number>& input, const PackOf<Number>& pressure,
+                              const PackOf<Number>& slope, const PackOf<Number>& response,
+                              LegPoles<Number>& poles) {
   const auto& leg = input.leg;
+  PackOf<Number> first, second, log_first, log_second, added;
   if (input.material == model::LegMaterial::neo_hookean) {
     GAITER_EACH {
-      const double rate = 2 * response[i];
-      const double gain = input.gives_way[i] * std::fabs(slope[i] * rate) * exp(clamped(rate * pressure[i]));
-      find_pole(gain, log(larger(gain, 1e-300)), 0, rate, pressure[i], slope[i], input.taper[i],
+      const Number rate = 2 * response[i];
+      first[i] = input.gives_way[i] * std::fabs(slope[i] * rate) * std::exp(clamped(rate * pressure[i]));
+      log_first[i] = std::log(larger(first[i], least<Number>));
+      find_pole(first[i], log_first[i], Number(0), rate, pressure[i], slope[i], input.taper[i],
                 poles.part[0][i], poles.fall[0][i]);
       poles.part[1][i] = poles.fall[1][i] = 0;
     }
     return;
   }
   GAITER_EACH {
-    const double size = input.gives_way[i] * std::fabs(slope[i]), up = leg[1][i], down = leg[3][i];
-    const double first = size * std::fabs(leg[0][i] * up) * exp(clamped(up * pressure[i]));
-    const double second = size * std::fabs(leg[2][i] * down) * exp(clamped(down * pressure[i]));
-    const double log_second = log(larger(second, 1e-300)), ratio = up != 0 && down != 0 ? up / down : -1.0;
-    const double added = -first / ratio * (1 - exp(clamped(-ratio * log_second)));
-    find_pole(first, log(larger(first, 1e-300)), 0, up, pressure[i], slope[i], input.taper[i],
-              poles.part[0][i], poles.fall[0][i]);
-    find_pole(second, log_second, added, down, pressure[i], slope[i], input.taper[i], poles.part[1][i],
-              poles.fall[1][i]);
+    first[i] = clamped(leg[1][i] * pressure[i]);
+    second[i] = clamped(leg[3][i] * pressure[i]);
+  }
+  exp_each(first, first);
+  exp_each(second, second);
+  GAITER_EACH {
+    const Number size = input.gives_way[i] * std::fabs(slope[i]);
+    first[i] *= size * std::fabs(leg[0][i] * leg[1][i]);
+    second[i] *= size * std::fabs(leg[2][i] * leg[3][i]);
+    log_first[i] = larger(first[i], least<Number>);
+    log_second[i] = larger(second[i], least<Number>);
+  }
+  log_each(log_first, log_first);
+  log_each(log_second, log_second);
+  GAITER_EACH {
+    const Number up = leg[1][i], down = leg[3][i];
+    added[i] = clamped(up != 0 && down != 0 ? -up / down * log_second[i] : log_second[i]);
+  }
+  exp_each(added, added);
+  GAITER_EACH {
+    const Number up = leg[1][i], down = leg[3][i];
+    const Number ratio = up != 0 && down != 0 ? -down / up : Number(1);
+    find_pole(first[i], log_first[i], Number(0), up, pressure[i], slope[i], input.taper[i], poles.part[0][i],
+              poles.fall[0][i]);
+    find_pole(second[i], log_second[i], first[i] * ratio * (1 - added[i]), down, pressure[i], slope[i],
+              input.taper[i], poles.part[1][i], poles.fall[1][i]);
   }
 }
 

@@ -28,17 +28,19 @@ double pressure_bound(const model::Leg& leg, const LegConstants& constants, doub
 // The same of either law, for loops over packs: from a and a + c; from K/S and G/(3S).
 constexpr double bound_rounding = 1 + 1e-9;
 
-inline double strain_law_pressure_bound(double a, double strain_of_none, double strain) {
+template <typename Number>
+inline Number strain_law_pressure_bound(Number a, Number strain_of_none, Number strain) {
   // a exp(bP) = strain - c exp(dP), where c <= 0 and the second exponential is between 0 and 1.
-  const double reached = strain < 1 ? strain : 1;
-  const double beyond = reached > strain_of_none ? reached - strain_of_none : 0;
-  return std::log1p(beyond / a) * bound_rounding;
+  const Number reached = strain < 1 ? strain : Number(1);
+  const Number beyond = reached > strain_of_none ? reached - strain_of_none : Number(0);
+  return std::log1p(beyond / a) * Number(bound_rounding);
 }
 
-inline double neo_hookean_pressure_bound(double bulk, double shear, double strain) {
-  const double reached = strain < 0.99 ? strain : 0.99;
-  const double power = std::exp(-10.0 / 3 * std::log(1 - reached));
-  return reached * (2 - reached) * (bulk + shear * power) * bound_rounding;
+template <typename Number>
+inline Number neo_hookean_pressure_bound(Number bulk, Number shear, Number strain) {
+  const Number reached = strain < Number(0.99) ? strain : Number(0.99);
+  const Number power = std::exp(Number(-10.0 / 3) * std::log(1 - reached));
+  return reached * (2 - reached) * (bulk + shear * power) * Number(bound_rounding);
 }
 
 }  // namespace gaiter::physics

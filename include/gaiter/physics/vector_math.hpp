@@ -17,6 +17,8 @@ __attribute__((simd("notinbranch"), const)) double log(double) noexcept;
 __attribute__((simd("notinbranch"), const)) double exp(double) noexcept;
 __attribute__((simd("notinbranch"), const)) float expm1f(float) noexcept;
 __attribute__((simd("notinbranch"), const)) float log1pf(float) noexcept;
+__attribute__((simd("notinbranch"), const)) float logf(float) noexcept;
+__attribute__((simd("notinbranch"), const)) float expf(float) noexcept;
 }
 #endif
 
@@ -27,11 +29,14 @@ namespace gaiter::physics {
 constexpr int pack_width = 64;
 
 // One quantity for each slice of a pack.
-struct alignas(64) Pack {
-  double value[pack_width];
+template <typename Number>
+struct alignas(64) PackOf {
+  Number value[pack_width];
 
-  double& operator[](int i) { return value[i]; }
-  double operator[](int i) const { return value[i]; }
+  Number& operator[](int i) { return value[i]; }
+  Number operator[](int i) const { return value[i]; }
 };
+
+using Pack = PackOf<double>;
 
 }  // namespace gaiter::physics
