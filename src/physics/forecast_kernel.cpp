@@ -17,6 +17,8 @@ using namespace forecast;
 constexpr double vacuum_permittivity = 8.8541878128e-12;  // [F/m]
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr int most_steps = 8;  // of Newton's method for a forecast
+constexpr int most_steps_to_cut = 40;
+constexpr double error_of_cut = 1e-6;  // over the height; that of the mean pressure goes with its square
 
 // P_m, Eq. (4), and with `voltage` less P_a, Eq. (8); their slope over the logarithm of the leg's radius. The
 // radius is that of the segment times (1 + `wider`). By two Gauss points through the wall.
@@ -66,6 +68,20 @@ GAITER_INLINE void pressing(const Input& input, const WallRatios& wall, bool vol
     pressure[i] -= relief[i];
     slope[i] -= relief_slope[i];
   }
+}
+
+GAITER_INLINE void find_wall_ratios(const Input& input, WallRatios& wall) {
+  // Gauss-Legendre, 2 points on (0, 1).
+  constexpr std::array<double, 2> nodes{0.21132486540518713, 0.78867513459481287};
+  for (std::size_t j = 0; j < nodes.size(); ++j) GAITER_EACH wall[j][i] = exp(-input.log_area[i] * nodes[j]);
+}
+
+// What a leg without pressure has left of its radius.
+GAITER_INLINE void find_unloaded(const Input& input, Pack& left) {
+  Pack none, response;
+  GAITER_EACH none[i] = 0;
+  strain_law(input, none, left, response);
+  GAITER_EACH left[i] = input.gives_way[i] > 0 ? 1 - left[i] : 1;
 }
 
 // Safeguarded Newton's method for the equilibrium of a slice whose radius is 1 + `outline` times the
@@ -208,10 +224,8 @@ template struct ForecastInput<float>;
 GAITER_MULTIVERSION
 void forecast_state(const ForecastInput<double>& input, bool voltage, const ForecastState* rest, ForecastState& s) {
   Pack wider, unused, none, open, found, slope;
-  // Gauss-Legendre, 2 points on (0, 1).
-  constexpr std::array<double, 2> nodes{0.21132486540518713, 0.78867513459481287};
   WallRatios wall;
-  for (std::size_t j = 0; j < nodes.size(); ++j) GAITER_EACH wall[j][i] = exp(-input.log_area[i] * nodes[j]);
+  find_wall_ratios(input, wall);
   GAITER_EACH none[i] = 0;
   pressing(input, wall, voltage, none, s.rigid, s.slope, s.passive);
   GAITER_EACH {
@@ -241,11 +255,8 @@ void forecast_state(const ForecastInput<double>& input, bool voltage, const Fore
 
   // Which ends are open.
   Pack left;
-  strain_law(input, none, left, unused);
-  GAITER_EACH {
-    left[i] = input.gives_way[i] > 0 ? 1 - left[i] : 1;
-    wider[i] = (1 - std::fabs(input.taper[i])) * left[i] - 1;
-  }
+  find_unloaded(input, left);
+  GAITER_EACH wider[i] = (1 - std::fabs(input.taper[i])) * left[i] - 1;
   pressing(input, wall, voltage, wider, s.narrow_net, unused, found);
   s.wide_net = s.narrow_net;  // where the narrow end touches, so does the other
   double open_ends = 0;
@@ -256,6 +267,38 @@ void forecast_state(const ForecastInput<double>& input, bool voltage, const Fore
     GAITER_EACH s.wide_net[i] = s.narrow_net[i] > 0 ? s.narrow_net[i] : unused[i];
   }
   find_poles(input, s.pressure, s.slope, s.response, s.poles);
+}
+
+GAITER_MULTIVERSION
+void forecast_cut(const ForecastInput<double>& input, const ForecastState& state, Pack& open, Pack& height) {
+  WallRatios wall;
+  Pack left, low, high, place, wider, net, slope, unused;  // places: -1 at the narrow end, 1 at the wide one
+  find_wall_ratios(input, wall);
+  find_unloaded(input, left);
+  GAITER_EACH {
+    low[i] = -1;
+    high[i] = 1;
+    const double sum = state.wide_net[i] - state.narrow_net[i];
+    place[i] = open[i] > 0 ? -(state.wide_net[i] + state.narrow_net[i]) / sum : 0;
+  }
+  for (int step = 0; step < most_steps_to_cut; ++step) {
+    GAITER_EACH wider[i] = (1 + std::fabs(input.taper[i]) * place[i]) * left[i] - 1;
+    pressing(input, wall, true, wider, net, slope, unused);
+    double still = 0;
+    GAITER_EACH {
+      const bool counts = open[i] > 0, beyond = (net[i] > 0) == (state.wide_net[i] > 0);
+      const double here = place[i], taper = std::fabs(input.taper[i]);
+      high[i] = counts && beyond ? here : high[i];
+      low[i] = counts && !beyond ? here : low[i];
+      const double newton = here - net[i] * (1 + taper * here) / (taper * slope[i]);
+      const double next = newton > low[i] && newton < high[i] ? newton : 0.5 * (low[i] + high[i]);
+      place[i] = counts ? next : here;
+      open[i] = counts && std::fabs(next - here) > 2 * error_of_cut ? 1 : 0;
+      still += open[i];
+    }
+    if (!(still > 0)) break;
+  }
+  GAITER_EACH height[i] = 0.5 * (1 + (input.taper[i] < 0 ? -place[i] : place[i]));
 }
 
 GAITER_MULTIVERSION

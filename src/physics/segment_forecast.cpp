@@ -2,12 +2,10 @@
 #include "gaiter/physics/segment_forecast.hpp"
 
 #include <algorithm>
-#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <limits>
 
 #include "gaiter/physics/forecast_laws.hpp"
-#include "gaiter/physics/quadrature.hpp"
 
 namespace gaiter::physics {
 
@@ -16,14 +14,6 @@ namespace {
 using forecast::caution;
 using forecast::caution_of_mean;
 using forecast::caution_of_wall;
-
-constexpr int points_of_cut = 4;  // through the wall
-constexpr int bits_of_cut = 24;   // the error of the mean pressure goes with the square of the cut's
-
-const Quadrature& cut_rule() {
-  static const Quadrature rule = gauss_legendre(points_of_cut);
-  return rule;
-}
 
 }  // namespace
 
@@ -75,6 +65,13 @@ void SegmentForecast::analyse(std::span<SegmentForecast> forecasts, Depth depth)
     for (int lane = 0; voltage && lane < pack_width; ++lane)
       if (actuated.pressure[lane] > 0) strain[lane] = std::min(strain[lane], actuated.strain[lane]);
     forecast_errors(input, strain, errors);
+    Pack partly{}, cut{};
+    double cut_somewhere = 0;
+    for (int lane = 0; voltage && lane < count; ++lane) {
+      partly[lane] = (actuated.narrow_net[lane] > 0) != (actuated.wide_net[lane] > 0) ? 1 : 0;
+      cut_somewhere += partly[lane];
+    }
+    if (cut_somewhere > 0) forecast_cut(input, actuated, partly, cut);
     for (int lane = 0; lane < count; ++lane) {
       SegmentForecast& one = some[lane];
       one.taper_ = input.taper[lane];
@@ -84,7 +81,7 @@ void SegmentForecast::analyse(std::span<SegmentForecast> forecasts, Depth depth)
         one.height_[n] = errors.height[n][lane];
         one.wall_[n] = errors.wall[n][lane];
       }
-      one.find_cuts(input, lane);
+      one.find_cuts(input, lane, cut[lane]);
     }
   }
 }
@@ -96,7 +93,7 @@ void SegmentForecast::want(bool rest, bool actuated) {
 }
 
 // Heights at which the pressure on a leg without pressure, which decides there, changes its sign.
-void SegmentForecast::find_cuts(const ForecastInput<double>& input, int lane) {
+void SegmentForecast::find_cuts(const ForecastInput<double>& input, int lane, double actuated_cut) {
   cuts_.clear();
   open_everywhere_ = rest_.lower_end_open && rest_.upper_end_open &&
                      (!energised_ || (actuated_.lower_end_open && actuated_.upper_end_open));
@@ -108,32 +105,7 @@ void SegmentForecast::find_cuts(const ForecastInput<double>& input, int lane) {
   const double gap = input.gap[lane], leg = input.leg_radius[lane];
   const auto excess = [&](double height) { return gap - leg + leg * (1 + taper_ * (2 * height - 1)) * left; };
   if (cut_at_rest && (excess(0) > 0) != (excess(1) > 0)) cuts_.push_back(excess(0) / (excess(0) - excess(1)));
-  if (!cut_actuated) return;
-  const Quadrature& rule = cut_rule();
-  std::array<double, points_of_cut> ratios;
-  for (int j = 0; j < points_of_cut; ++j) ratios[j] = std::exp(-input.log_area[lane] * rule.nodes[j]);
-  const auto pressure = [&](double height) {
-    const double above = excess(height), swell = above * (2 + above);
-    double passive = 0;
-    for (int j = 0; j < points_of_cut; ++j) {
-      const double square = swell * ratios[j], x = 0.5 * std::log1p(square);
-      double stress = 0;
-      for (const auto& term : input.terms) {
-        const double power = std::exp(forecast::clamped(term.alpha[lane] * x));
-        stress += term.mu[lane] * (power - 1 / power);
-      }
-      passive += 0.5 * rule.weights[j] * stress / (1 + square);
-    }
-    const double inner = 1 + swell, area = input.area[lane], log_wall = std::log1p(area / inner);
-    return input.log_area[lane] * passive -
-           input.drive[lane] * area / (inner * (inner + area) * log_wall * log_wall);
-  };
-  const double low = pressure(0), high = pressure(1);
-  if ((low > 0) == (high > 0)) return;
-  std::uintmax_t most = 60;
-  const auto [from, to] = boost::math::tools::toms748_solve(
-      pressure, 0.0, 1.0, low, high, boost::math::tools::eps_tolerance<double>(bits_of_cut), most);
-  cuts_.push_back(0.5 * (from + to));
+  if (cut_actuated) cuts_.push_back(actuated_cut);
   std::sort(cuts_.begin(), cuts_.end());
 }
 

@@ -73,6 +73,10 @@ struct ForecastErrors {
 void forecast_state(const ForecastInput<double>& input, bool voltage, const ForecastState* rest,
                     ForecastState& state);
 
+// The height, over that of the segment, at which the pressure under voltage on a leg without pressure, which
+// decides where the bandage leaves it, changes its sign; where `open` on entry: one end is.
+void forecast_cut(const ForecastInput<double>& input, const ForecastState& state, Pack& open, Pack& height);
+
 // At a strain of the leg.
 void forecast_errors(const ForecastInput<double>& input, const Pack& strain, ForecastErrors<double>& errors);
 

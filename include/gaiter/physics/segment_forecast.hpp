@@ -74,7 +74,7 @@ class SegmentForecast {
   };
 
   void take(const ForecastState& found, int lane, State& state) const;
-  void find_cuts(const ForecastInput<double>& input, int lane);
+  void find_cuts(const ForecastInput<double>& input, int lane, double actuated_cut);
   double spread(const State& state, double power) const;
   double leg_error(const State& state, int slices) const;
   double height_error(const State& state, int slices) const;
