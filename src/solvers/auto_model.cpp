@@ -9,10 +9,10 @@
 #include <tuple>
 
 #include "gaiter/physics/height_error.hpp"
-#include "gaiter/physics/quick_forecast.hpp"
 #include "gaiter/physics/segment_forecast.hpp"
 #include "gaiter/solvers/auto_climb.hpp"
 #include "gaiter/solvers/axisym_model.hpp"
+#include "gaiter/solvers/quick_segments.hpp"
 #include "gaiter/solvers/sliding_model.hpp"
 
 namespace gaiter::solvers {
@@ -63,24 +63,6 @@ double plan_cost(const model::Scene& scene, std::size_t segment, const SlicePlan
 }
 
 namespace {
-
-// One segment of a quick forecast, asked like a SegmentForecast.
-template <typename Number>
-struct QuickSegment {
-  using Pack = physics::QuickForecast<Number>;
-  static constexpr int most_slices = Pack::most_points, most_wall_points = most_slices;
-
-  const Pack& pack;
-  int place;
-
-  bool sure() const { return pack.sure[place] > 0; }
-  double compliance_error() const { return pack.compliance[place]; }
-  double first_order_error() const { return pack.first_order[place]; }
-  double height_error(int slices) const { return pack.height_error(place, slices); }
-  double wall_error(int points) const { return pack.wall_error(place, points); }
-  double drop_factor() const { return pack.drop_factor[place]; }
-  double volume_factor() const { return pack.volume_factor[place]; }
-};
 
 // Errors of the wanted outputs over those of the pressure.
 template <typename Forecast>
@@ -159,10 +141,15 @@ bool choose_model(const model::Scene& scene, const model::Goal& goal, double acc
   return choose_points(forecast, plan);
 }
 
+CountedStates counted_states(const model::Goal& goal) {
+  return {goal.pressure_rest || goal.actuation_drop, goal.actuated()};
+}
+
 SlicePlan plan_for(const model::Scene& scene, std::size_t segment, SegmentForecast& forecast,
                    double accuracy) {
   const model::Goal goal = scene.goal.of(segment);
-  forecast.want(goal.pressure_rest || goal.actuation_drop, goal.actuated());
+  const CountedStates states = counted_states(goal);
+  forecast.want(states.rest, states.actuated);
   SlicePlan plan;
   plan.cuts = forecast.cuts();
   const bool contact = plan.cuts.empty() && !forecast.open_everywhere();
@@ -193,46 +180,6 @@ SlicePlan plan_segment(const model::Scene& scene, std::size_t segment) {
   return plan_for(scene, segment, forecast, higher.asked * plan.factor);
 }
 
-namespace {
-
-// Plans of `chosen` tasks by quick forecasts; those of which these are not sure are added to `doubtful`.
-template <typename Number>
-void plan_quickly(std::span<const SegmentTask> tasks, std::span<const std::size_t> chosen,
-                  std::vector<SlicePlan>& plans, std::vector<std::size_t>& doubtful) {
-  // Large, so that it is kept for the next batch.
-  thread_local physics::ForecastInput<Number> input;
-  thread_local physics::QuickForecast<Number> quick;
-  for (std::size_t first = 0; first < chosen.size(); first += physics::pack_width) {
-    const auto some = chosen.subspan(first, std::min<std::size_t>(physics::pack_width, chosen.size() - first));
-    const int count = static_cast<int>(some.size());
-    physics::PackOf<Number> rest{}, actuated{};
-    input.start(*tasks[some[0]].scene);
-    for (int place = 0; place < count; ++place) {
-      const auto& [scene, segment, none] = tasks[some[place]];
-      const model::Goal goal = scene->goal.of(segment);
-      const bool voltage = scene->bandage.modules[segment].voltage != 0;
-      input.set(place, *scene, segment);
-      actuated[place] = goal.actuated() && voltage ? 1 : 0;
-      rest[place] = goal.pressure_rest || goal.actuation_drop || actuated[place] == 0 ? 1 : 0;
-    }
-    input.close(count);
-    quick.analyse(input, rest, actuated);
-    for (int place = 0; place < count; ++place) {
-      const auto& [scene, segment, none] = tasks[some[place]];
-      SlicePlan& plan = plans[some[place]];
-      const QuickSegment<Number> forecast{quick, place};
-      plan.cuts.clear();
-      if (forecast.sure() && choose_model(*scene, scene->goal.of(segment), accuracy_of_slices(scene->goal),
-                                          forecast, true, plan))
-        plan.cost = cost_of_quick_forecast + plan_cost(*scene, segment, plan);
-      else
-        doubtful.push_back(some[place]);
-    }
-  }
-}
-
-}  // namespace
-
 void plan_segments(std::span<const SegmentTask> tasks, std::vector<SlicePlan>& plans) {
   thread_local std::vector<std::size_t> roughly, finely, doubtful;
   thread_local std::vector<SegmentForecast> forecasts;
@@ -245,8 +192,18 @@ void plan_segments(std::span<const SegmentTask> tasks, std::vector<SlicePlan>& p
                                                : finely)
         .push_back(t);
   }
-  plan_quickly<float>(tasks, roughly, plans, doubtful);
-  plan_quickly<double>(tasks, finely, plans, doubtful);
+  const auto counted = [&](std::size_t t) { return counted_states(tasks[t].scene->goal.of(tasks[t].segment)); };
+  const auto told = [&](std::size_t t, const auto& forecast) {
+    const auto& [scene, segment, none] = tasks[t];
+    SlicePlan& plan = plans[t];
+    plan.cuts.clear();
+    const double accuracy = accuracy_of_slices(scene->goal);
+    if (!choose_model(*scene, scene->goal.of(segment), accuracy, forecast, true, plan)) return false;
+    plan.cost = cost_of_quick_forecast + plan_cost(*scene, segment, plan);
+    return true;
+  };
+  forecast_quickly<float>(tasks, roughly, counted, told, doubtful);
+  forecast_quickly<double>(tasks, finely, counted, told, doubtful);
   forecasts.clear();
   for (const std::size_t t : doubtful) forecasts.emplace_back(*tasks[t].scene, tasks[t].segment);
   SegmentForecast::analyse(forecasts);

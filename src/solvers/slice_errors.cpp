@@ -2,7 +2,6 @@
 // Relative errors of the height averages of a batch of slices.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "gaiter/physics/height_error.hpp"
 #include "gaiter/physics/slice_kernel.hpp"
@@ -19,7 +18,6 @@ namespace {
 constexpr double caution = 10;  // of an error estimated from starting values instead of solutions
 constexpr double largest_own_error =
     1e-4;                                 // that the slices' own pressures tell; beyond, there may be a kink
-constexpr int fewest_to_tell = 6;         // slices, from which on these are trusted without a plan
 constexpr double smallest_error = 4e-15;  // of a sum of some slices, by rounding
 constexpr int most_check_points = 128;    // over the height, of the rule that an error estimate compares with
 
@@ -38,10 +36,15 @@ void SliceModel::height_errors(const Block& block) {
   const bool gauss = planned || first.scene->discretisation.slice_rule == model::SliceRule::gauss;
   const int fewest = planned ? physics::fewest_for_height_error : fewest_to_tell;
   if (static_cast<int>(count) < fewest || !gauss) {
-    if (planned)
-      tell([](int, const SlicePlan* plan) { return plan->height_error; });
-    else
-      unclear_.insert(unclear_.end(), block.tasks.begin(), block.tasks.end());
+    if (planned) tell([](int, const SlicePlan* plan) { return plan->height_error; });
+    for (std::size_t i = 0; !planned && i < block.tasks.size(); ++i) {
+      const std::size_t task = block.tasks[i];
+      const double foreseen = foreseen_.empty() ? not_known : foreseen_[task].height_error;
+      if (std::isfinite(foreseen))
+        height_error_[task] = std::max(smallest_error, foreseen);
+      else
+        unclear_.push_back(task);
+    }
     return;
   }
   Pack worst{};
@@ -84,19 +87,16 @@ void SliceModel::height_errors(const Block& block) {
 // slices would.
 double SliceModel::model_error(std::size_t task, const model::SegmentResult& result, double beyond) const {
   const model::Scene& scene = *tasks_[task].scene;
-  constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  if (!std::isfinite(beyond)) return none;
+  if (!std::isfinite(beyond)) return not_known;
   if (result.fidelity == model::Fidelity::slice || scene.leg.model == model::LegModel::rigid) return beyond;
   if (tasks_[task].plan) return beyond + tasks_[task].plan->model_error;
   // A leg without compliance has none to correct for.
   const bool known = scene.leg.material != model::LegMaterial::compliance ||
                      scene.leg.segments[tasks_[task].segment].compliance.b > 0;
-  if (!known) return none;
-  const physics::SegmentForecast& forecast = forecasts_[task];
-  const double error = beyond + (result.fidelity == model::Fidelity::rigid ? forecast.compliance_error()
-                                                                           : forecast.first_order_error());
+  if (!known) return not_known;
+  const double error = beyond + foreseen_[task].model_error;
   // A leg that gives way may feel nothing at all, and no multiple of that is the error.
-  return std::isfinite(error) ? error : none;
+  return std::isfinite(error) ? error : not_known;
 }
 
 // Of the tasks left, from the average of the starting values, which are close to the pressures.

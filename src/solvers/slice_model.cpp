@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "gaiter/petsc/session.hpp"
 #include "gaiter/physics/model_error.hpp"
 #include "gaiter/physics/segment_summary.hpp"
 #include "gaiter/physics/slice_kernel.hpp"
 #include "gaiter/physics/wall_resolution.hpp"
+#include "gaiter/solvers/quick_segments.hpp"
 
 namespace gaiter::solvers {
 
@@ -37,17 +39,36 @@ const physics::Quadrature& SliceModel::wall_rule(int points) {
   return found->second;
 }
 
-// What is known of the errors of tasks that are not planned, where more is wanted than slices themselves
-// tell.
-void SliceModel::forecast() {
-  forecasts_.clear();
+// Where more is wanted than slices themselves tell.
+void SliceModel::foresee() {
+  foreseen_.clear();
   const auto asks = [](const SegmentTask& task) {
     const model::Scene& scene = *task.scene;
-    return scene.fidelity != model::Fidelity::slice || scene.discretisation.wall_points > 0;
+    return scene.fidelity != model::Fidelity::slice || scene.discretisation.wall_points > 0 ||
+           scene.discretisation.slice_count < fewest_to_tell;
   };
   if (planned_ || std::none_of(tasks_.begin(), tasks_.end(), asks)) return;
-  for (const SegmentTask& task : tasks_) forecasts_.emplace_back(*task.scene, task.segment);
-  physics::SegmentForecast::analyse(forecasts_);
+  foreseen_.resize(tasks_.size());
+  std::vector<std::size_t> all(tasks_.size()), doubtful;
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  const auto tell = [&](std::size_t t, const auto& forecast, bool sure) {
+    const model::Scene& scene = *tasks_[t].scene;
+    const int points = scene.discretisation.wall_points, slices = scene.discretisation.slice_count;
+    const bool gauss = scene.discretisation.slice_rule == model::SliceRule::gauss;
+    foreseen_[t].wall_error = points > 0 ? forecast.wall_error(points) : 0;
+    foreseen_[t].height_error =
+        sure && gauss && slices < fewest_to_tell ? forecast.height_error(slices) : not_known;
+    foreseen_[t].model_error = scene.fidelity == model::Fidelity::rigid ? forecast.compliance_error()
+                                                                        : forecast.first_order_error();
+    return true;
+  };
+  forecast_quickly<double>(
+      tasks_, all, [](std::size_t) { return CountedStates{}; },
+      [&](std::size_t t, const auto& forecast) { return tell(t, forecast, true); }, doubtful);
+  std::vector<physics::SegmentForecast> forecasts;
+  for (const std::size_t t : doubtful) forecasts.emplace_back(*tasks_[t].scene, tasks_[t].segment);
+  physics::SegmentForecast::analyse(forecasts);
+  for (std::size_t k = 0; k < doubtful.size(); ++k) tell(doubtful[k], forecasts[k], false);
 }
 
 // The tasks' slices, set up in the memory of the batch before.
@@ -76,14 +97,13 @@ void SliceModel::take(std::span<const SegmentTask> tasks) {
   energised_ = !petsc::agree(comm_, !voltage_somewhere);
   newton_ = petsc::agree(comm_, all_newton);
   planned_ = std::any_of(tasks.begin(), tasks.end(), [](const SegmentTask& task) { return task.plan; });
-  forecast();
+  foresee();
   if (!planned_)
     physics::choose_wall_points(numbers_, shape.single ? wall_tolerance_in_single : wall_tolerance);
   for (std::size_t t = 0; t < tasks.size(); ++t) {
-    const int points = tasks[t].scene->discretisation.wall_points;
-    if (!tasks[t].plan && points == 0) continue;
+    if (!tasks[t].plan && tasks[t].scene->discretisation.wall_points == 0) continue;
     physics::SegmentNumbers& numbers = numbers_[t];
-    numbers.wall_error = tasks[t].plan ? tasks[t].plan->wall_error : forecasts_[t].wall_error(points);
+    numbers.wall_error = tasks[t].plan ? tasks[t].plan->wall_error : foreseen_[t].wall_error;
     numbers.passive_wall_error = 0;  // the forecast is that of the pressure in equilibrium
     // Where it expects no pressure, the estimate for the passive one remains.
     if (!std::isfinite(numbers.wall_error))

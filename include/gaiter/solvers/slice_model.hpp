@@ -4,6 +4,7 @@
 #include <mpi.h>
 
 #include <array>
+#include <limits>
 #include <map>
 #include <memory>
 #include <span>
@@ -65,6 +66,16 @@ class SliceModel {
   std::span<const model::SegmentResult> solve(std::span<const SegmentTask> tasks);
 
  private:
+  static constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
+  static constexpr int fewest_to_tell = 6;  // slices, from which on their pressures tell of the height's error
+
+  // What is known of the errors of a task that is not planned.
+  struct Foreseen {
+    double wall_error = 0;    // where its scene says how many points
+    double height_error = 0;  // of few slices; or not_known
+    double model_error = 0;   // of the rigid leg, or of the first order, against slices
+  };
+
   // Up to 64 segments with equally many slices. The first slices of all are a pack, and so on.
   struct Block {
     std::size_t first_pack = 0;
@@ -77,7 +88,7 @@ class SliceModel {
     std::size_t end_pack() const { return first_pack + heights.size(); }
   };
 
-  void forecast();
+  void foresee();
   void take(std::span<const SegmentTask> tasks);
   void arrange();
   void lay_slices(Block& block);
@@ -119,7 +130,7 @@ class SliceModel {
   std::span<const SegmentTask> tasks_;
   std::vector<physics::SegmentNumbers> numbers_;     // of each task
   bool planned_ = false;                             // some task has a plan; then all have
-  std::vector<physics::SegmentForecast> forecasts_;  // of each task, where they are needed
+  std::vector<Foreseen> foreseen_;                   // of each task, where it is needed
   std::vector<Block> blocks_;
   bool energised_ = false;  // somewhere, on any rank
   bool newton_ = true;      // all ranks agree, those without tasks too
