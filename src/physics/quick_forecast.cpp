@@ -276,11 +276,12 @@ double QuickForecast<Number>::height_error(int place, int points) const {
 template <typename Number>
 double QuickForecast<Number>::wall_error(int place, int points) const {
   const int known = points < forecast_points ? points : forecast_points;
-  const double before = errors_.wall[known - 1][place], here = errors_.wall[known][place],
+  const Number before = errors_.wall[known - 1][place], here = errors_.wall[known][place],
                after = errors_.wall[known + 1][place];
   // A term that is small by chance is not trusted.
-  const double by_neighbours = 0.2 * std::sqrt(before * after);
-  return caution_of_wall * share_[place] * (larger(here, by_neighbours) + after);
+  const Number neighbours = Number(0.04f) * before * after;
+  const Number trusted = here * here < neighbours ? std::sqrt(neighbours) : here;
+  return caution_of_wall * share_[place] * (trusted + after);
 }
 
 template class QuickForecast<double>;
