@@ -25,8 +25,8 @@ constexpr double error_of_cut = 1e-6;  // over the height; that of the mean pres
 using WallRatios = std::array<Pack, 2>;  // A^2/s
 using Input = ForecastInput<double>;
 
-GAITER_INLINE void pressing(const Input& input, const WallRatios& wall, bool voltage,
-                            const Pack& wider, Pack& pressure, Pack& slope, Pack& passive) {
+GAITER_INLINE void pressing(const Input& input, const WallRatios& wall, bool voltage, const Pack& wider,
+                            Pack& pressure, Pack& slope, Pack& passive) {
   Pack swell, x, stress, stress_slope, inverse;
   GAITER_EACH {
     const double wanted = input.gap[i] + input.leg_radius[i] * wider[i];
@@ -222,7 +222,8 @@ template struct ForecastInput<float>;
 
 // The first order is the start that slices have (start_at_rest).
 GAITER_MULTIVERSION
-void forecast_state(const ForecastInput<double>& input, bool voltage, const ForecastState* rest, ForecastState& s) {
+void forecast_state(const ForecastInput<double>& input, bool voltage, const ForecastState* rest,
+                    ForecastState& s) {
   Pack wider, unused, none, open, found, slope;
   WallRatios wall;
   find_wall_ratios(input, wall);

@@ -32,7 +32,7 @@ constexpr int most_refinements = 3;
 constexpr double shares_model = 0.7;  // of the tolerance that the model's error may take
 constexpr double strict_tolerance = 5e-5, strict_share = 0.05;  // likewise, of small ones
 constexpr double least_in_single = 1e-4;  // accuracy for which quick forecasts in single precision do
-constexpr double share_of_slices = 0.3;  // of the goal, for slices that finer models' errors are added to
+constexpr double share_of_slices = 0.3;   // of the goal, for slices that finer models' errors are added to
 
 // Measured on one core of a 2.1 GHz x86-64 server, large batches [s]; of a slice in one state, and of its
 // pressure at one wall point, per Ogden term.
@@ -187,12 +187,14 @@ void plan_segments(std::span<const SegmentTask> tasks, std::vector<SlicePlan>& p
   for (auto* chosen : {&roughly, &finely, &doubtful}) chosen->clear();
   for (std::size_t t = 0; t < tasks.size(); ++t) {
     const model::Goal& goal = tasks[t].scene->goal;
-    (goal.up_to != Fidelity::slice             ? doubtful
+    (goal.up_to != Fidelity::slice      ? doubtful
      : goal.accuracy >= least_in_single ? roughly
-                                               : finely)
+                                        : finely)
         .push_back(t);
   }
-  const auto counted = [&](std::size_t t) { return counted_states(tasks[t].scene->goal.of(tasks[t].segment)); };
+  const auto counted = [&](std::size_t t) {
+    return counted_states(tasks[t].scene->goal.of(tasks[t].segment));
+  };
   const auto told = [&](std::size_t t, const auto& forecast) {
     const auto& [scene, segment, none] = tasks[t];
     SlicePlan& plan = plans[t];

@@ -58,8 +58,8 @@ void SliceModel::foresee() {
     foreseen_[t].wall_error = points > 0 ? forecast.wall_error(points) : 0;
     foreseen_[t].height_error =
         sure && gauss && slices < fewest_to_tell ? forecast.height_error(slices) : not_known;
-    foreseen_[t].model_error = scene.fidelity == model::Fidelity::rigid ? forecast.compliance_error()
-                                                                        : forecast.first_order_error();
+    foreseen_[t].model_error =
+        scene.fidelity == model::Fidelity::rigid ? forecast.compliance_error() : forecast.first_order_error();
     return true;
   };
   forecast_quickly<double>(

@@ -41,7 +41,8 @@ void forecast_quickly(std::span<const SegmentTask> tasks, std::span<const std::s
   thread_local physics::ForecastInput<Number> input;
   thread_local physics::QuickForecast<Number> quick;
   for (std::size_t first = 0; first < chosen.size(); first += physics::pack_width) {
-    const auto some = chosen.subspan(first, std::min<std::size_t>(physics::pack_width, chosen.size() - first));
+    const auto some =
+        chosen.subspan(first, std::min<std::size_t>(physics::pack_width, chosen.size() - first));
     const int count = static_cast<int>(some.size());
     physics::PackOf<Number> rest{}, actuated{};
     input.start(*tasks[some[0]].scene);

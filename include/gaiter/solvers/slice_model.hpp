@@ -67,7 +67,8 @@ class SliceModel {
 
  private:
   static constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
-  static constexpr int fewest_to_tell = 6;  // slices, from which on their pressures tell of the height's error
+  static constexpr int fewest_to_tell =
+      6;  // slices, from which on their pressures tell of the height's error
 
   // What is known of the errors of a task that is not planned.
   struct Foreseen {
@@ -128,9 +129,9 @@ class SliceModel {
 
   // Of the batch at hand.
   std::span<const SegmentTask> tasks_;
-  std::vector<physics::SegmentNumbers> numbers_;     // of each task
-  bool planned_ = false;                             // some task has a plan; then all have
-  std::vector<Foreseen> foreseen_;                   // of each task, where it is needed
+  std::vector<physics::SegmentNumbers> numbers_;  // of each task
+  bool planned_ = false;                          // some task has a plan; then all have
+  std::vector<Foreseen> foreseen_;                // of each task, where it is needed
   std::vector<Block> blocks_;
   bool energised_ = false;  // somewhere, on any rank
   bool newton_ = true;      // all ranks agree, those without tasks too
