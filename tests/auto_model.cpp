@@ -105,6 +105,39 @@ TEST(Forecast, QuickOneAgreesWithTheFullOne) {
   EXPECT_EQ(quick.sure[0], 0);
 }
 
+// The second look from two heights is close to the true errors of both models, at rest and under voltage, on
+// either kind of leg.
+TEST(Forecast, SecondLookKnowsTheModelsErrors) {
+  for (const bool soft_tissue : {false, true})
+    for (const double stretch : {1.2, 1.4, 1.8}) {
+      model::Scene scene = paper::scene(stretch, 5e3);
+      if (soft_tissue) scene.leg.material = model::LegMaterial::neo_hookean;
+      physics::ForecastInput<double> input;
+      physics::Pack counts;
+      for (int i = 0; i < physics::pack_width; ++i) counts[i] = 1;
+      physics::QuickForecast<double> quick;
+      input.start(scene);
+      for (int segment = 0; segment < 6; ++segment)
+        input.set(segment, scene, static_cast<std::size_t>(segment));
+      input.close(6);
+      quick.analyse(input, counts, counts);
+      quick.look_again(input, counts, counts);
+      for (std::size_t segment = 0; segment < 6; ++segment) {
+        ASSERT_GT(quick.sure[segment], 0) << stretch << ", segment " << segment;
+        const auto truth = resolved(scene, segment);
+        for (const Fidelity fidelity : {Fidelity::rigid, Fidelity::first_order}) {
+          const auto found =
+              by_plan(scene, segment, {.fidelity = fidelity, .slice_count = 48, .wall_points = 16});
+          const double told =
+              fidelity == Fidelity::rigid ? quick.compliance[segment] : quick.first_order[segment];
+          EXPECT_NEAR(told / error_of(found, truth), 1, 0.1)
+              << "neo-Hookean " << soft_tissue << ", " << stretch << ", segment " << segment << ", model "
+              << static_cast<int>(fidelity);
+        }
+      }
+    }
+}
+
 TEST(Forecast, OfTheWall) {
   for (const double thickness : {0.3e-3, 1e-3, 3e-3})
     for (const double stretch : {1.4, 2.2}) {

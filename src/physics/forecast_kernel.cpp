@@ -184,7 +184,6 @@ GAITER_INLINE void finish(ForecastInput<Number>& input, int count) {
       term.mu[i] = term.mu[count - 1];
       term.alpha[i] = term.alpha[count - 1];
     }
-  const bool law = input.material == model::LegMaterial::compliance;
   GAITER_EACH {
     const Number inner = 1 / input.inner_radius[i], wall = input.thickness[i] * inner;
     gap[i] *= inner;
@@ -197,12 +196,7 @@ GAITER_INLINE void finish(ForecastInput<Number>& input, int count) {
     input.slack[i] = gap[i] * input.inner_radius[i] * over;
   }
   log1p_each(input.area, input.log_area);
-  if (law) GAITER_EACH {
-      const Number none = leg[0][i] + leg[2][i];
-      input.pressure_limit[i] = strain_law_pressure_bound(leg[0][i], none, input.slack[i]) / leg[1][i];
-    }
-  else
-    GAITER_EACH input.pressure_limit[i] = neo_hookean_pressure_bound(leg[0][i], leg[1][i], input.slack[i]);
+  limit_pressure(input);
 }
 
 }  // namespace

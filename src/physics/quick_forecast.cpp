@@ -2,6 +2,7 @@
 #include "gaiter/physics/quick_forecast.hpp"
 
 #include "gaiter/physics/forecast_errors.hpp"
+#include "gaiter/physics/quick_states.hpp"
 
 namespace gaiter::physics {
 
@@ -9,146 +10,17 @@ namespace {
 
 using namespace forecast;
 
-// Newton's last step, in the logarithm of the pressure: beyond, the pressures are not known well enough.
-constexpr float largest_step = 1;
-constexpr float least_at_end = 0.02f;  // of the passive pressure, left by the voltage at the narrow end
+constexpr float caution_of_two = 1.005f;  // of two heights together
+constexpr float least_at_end = 0.02f;     // of the passive pressure, left by the voltage at the narrow end
 constexpr float beyond_all = 1e30f;
-
-// P_m of the leg's radius times (1 + `wider`), and what it grows with the logarithm of that radius; P_a
-// likewise, where there is a voltage.
 template <typename Number>
-struct Pressing {
-  PackOf<Number> passive, slope, relief, relief_slope;
-
-  Number net(int i) const { return passive[i] - relief[i]; }
-  Number net_slope(int i) const { return slope[i] - relief_slope[i]; }
-};
-
-template <typename Number>
-GAITER_INLINE void press(const ForecastInput<Number>& input, bool voltage, const PackOf<Number>& wider,
-                         Pressing<Number>& found) {
-  PackOf<Number> swell, x, w, stress, stress_slope, bend, rate, power;
-  GAITER_EACH {
-    const Number wanted = input.gap[i] + input.leg_radius[i] * wider[i];
-    const Number excess = larger(wanted, Number(-0.999f));
-    swell[i] = excess * (2 + excess);
-    x[i] = swell[i] * input.middle[i];
-    w[i] = 1 / (1 + x[i]);
-    rate[i] = input.leg_radius[i] * (1 + wider[i]);
-    stress[i] = stress_slope[i] = bend[i] = 0;
-  }
-  log1p_each(x, x);
-  for (const auto& term : input.terms) {
-    GAITER_EACH power[i] = clamped(0.5f * term.alpha[i] * x[i]);
-    exp_each(power, power);
-    GAITER_EACH {
-      const Number up = power[i], down = 1 / up, half = 0.5f * term.mu[i];
-      const Number sine = half * (up - down), m = 0.5f * term.alpha[i];
-      stress[i] += sine;
-      stress_slope[i] += term.alpha[i] * half * (up + down) - 2 * sine;
-      // Of w^(1 - m) and w^(1 + m), twice, over L^2 w (1 - w): see forecast_errors.
-      bend[i] += half * (up * (1 - m) * (1 - m - (2 - m) * w[i]) - down * (1 + m) * (1 + m - (2 + m) * w[i]));
-    }
-  }
-  GAITER_EACH {
-    const Number log_area = input.log_area[i], radius = 1 + input.gap[i] + input.leg_radius[i] * wider[i];
-    const Number thick = log_area * log_area * Number(1.0 / 24);
-    found.passive[i] = log_area * w[i] * (stress[i] + thick * (1 - w[i]) * bend[i]);
-    found.slope[i] = log_area * w[i] * w[i] * input.middle[i] * stress_slope[i] * radius * rate[i];
-  }
-  if (voltage)
-    relieving(input, swell, rate, found.relief, found.relief_slope);
-  else
-    GAITER_EACH found.relief[i] = found.relief_slope[i] = 0;
-}
-
-template <typename Number>
-struct State {
-  PackOf<Number> rigid, first, pressure, strain, response, slope, gain;
-};
-
-// The correction to first order, as start_at_rest has it, and a pressure to start from: that one, or, where
-// the bandage would crush the leg until it is slack, a Newton step from there. `slack_slope`: that of the
-// pressure then.
-template <typename Number>
-GAITER_INLINE void correct(const ForecastInput<Number>& input, const Pressing<Number>& undeformed,
-                           const PackOf<Number>& slack_slope, PackOf<Number>& sure, State<Number>& s) {
-  PackOf<Number> ratio;
-  GAITER_EACH {
-    const Number rigid = undeformed.net(i), limit = input.pressure_limit[i];
-    s.rigid[i] = rigid;
-    s.pressure[i] = rigid < limit ? rigid : limit;
-    sure[i] *= rigid > 0 ? 1 : 0;
-  }
-  strain_law(input, s.pressure, s.strain, s.response);
-  GAITER_EACH {
-    const Number softness = 1 / larger(1 - s.strain[i], Number(0.05f));
-    // The strain that leaves the bandage as much stretch as it needs for about that pressure; the leg's law
-    // is close to an exponential there.
-    const Number slack = input.slack[i], needed = input.pressure_limit[i] / (slack_slope[i] * softness);
-    const Number wanted = slack > 2 * needed ? slack - needed : 0.5f * slack;
-    ratio[i] = s.rigid[i] < input.pressure_limit[i] ? Number(1) : wanted / s.strain[i];
-  }
-  log_each(ratio, ratio);
-  GAITER_EACH {
-    const Number rigid = s.rigid[i], limit = input.pressure_limit[i], k = undeformed.net_slope(i);
-    const Number moved = rigid - k * s.strain[i] / (1 + k * s.response[i]);
-    const bool gives_way = input.gives_way[i] > 0, crushes = !(rigid < limit);
-    const bool good = (moved > 0) & (moved < limit) & (1 + k * s.response[i] > 0);
-    const Number from_slack = limit + ratio[i] * s.strain[i] / s.response[i];
-    const Number start = crushes ? from_slack : moved;
-    sure[i] *= good | crushes | !gives_way ? 1 : 0;
-    const Number corrected = crushes ? limit : moved;
-    s.first[i] = gives_way ? corrected : rigid;
-    s.pressure[i] = gives_way ? start : rigid;
-  }
-}
-
-// One Newton step for ln P = ln P_t from s.pressure.
-template <typename Number>
-GAITER_INLINE void step(const ForecastInput<Number>& input, bool voltage, PackOf<Number>& sure,
-                        State<Number>& s) {
-  Pressing<Number> here;
-  PackOf<Number> wider, ratio, grown;
-  strain_law(input, s.pressure, s.strain, s.response);
-  GAITER_EACH {
-    s.strain[i] *= input.gives_way[i];
-    s.response[i] *= input.gives_way[i];
-    wider[i] = -s.strain[i];
-  }
-  press(input, voltage, wider, here);
-  GAITER_EACH {
-    const Number pressure = s.pressure[i], net = here.net(i);
-    const bool pressing = (net > 0) & (pressure > 0);
-    ratio[i] = pressing ? net / pressure : Number(1);
-    sure[i] *= pressing | !(input.gives_way[i] > 0) ? 1 : 0;
-  }
-  log_each(ratio, grown);
-  GAITER_EACH {
-    const Number softness = s.response[i] / larger(1 - s.strain[i], Number(0.05f));
-    const Number slope = here.net_slope(i), stiffening = 1 + slope * softness / ratio[i];
-    const Number change = input.gives_way[i] * grown[i] / stiffening;
-    const bool good = (stiffening > 0.3f) & (std::fabs(change) < largest_step);
-    sure[i] *= good | !(input.gives_way[i] > 0) ? 1 : 0;
-    grown[i] = clamped(change);
-    s.slope[i] = slope;
-    s.gain[i] = larger(slope, Number(0)) * softness;
-  }
-  exp_each(grown, grown);
-  GAITER_EACH {
-    const Number pressure = s.pressure[i], next = pressure * grown[i];
-    sure[i] *= (next < input.pressure_limit[i]) | !(input.gives_way[i] > 0) ? 1 : 0;
-    s.strain[i] += s.response[i] * (next - pressure);
-    s.pressure[i] = next;
-  }
-}
+constexpr Number rounding = 16 * std::numeric_limits<Number>::epsilon();
 
 // What a state that counts says of the errors, if that is worse than what another did.
 template <typename Number>
 GAITER_INLINE void tell(const ForecastInput<Number>& input, const State<Number>& s,
                         const PackOf<Number>& counts, QuickForecast<Number>& found, PackOf<Number>& share,
                         LegPoles<Number>& poles) {
-  constexpr Number rounding = 16 * std::numeric_limits<Number>::epsilon();
   LegPoles<Number> own;
   PackOf<Number> x, up, fall, log_fall;
   find_poles(input, s.pressure, s.slope, s.response, own);
@@ -169,13 +41,14 @@ GAITER_INLINE void tell(const ForecastInput<Number>& input, const State<Number>&
     const Number spread_of_cube = (up[i] * up[i] * up[i] - down * down * down) * over * Number(1.0 / 6);
     const Number typical = Number(0.3) * log_fall[i] * log_fall[i];
     const Number missed = caution * std::fabs(s.first[i] / s.pressure[i] - 1);
-    const Number yields = counts[i] * input.gives_way[i];
-    const Number rigid_error = yields * (caution_of_mean * spread * std::fabs(fall[i] - 1) + rounding);
-    const Number first_error = yields * (spread_of_cube * larger(missed, typical) + rounding);
-    const Number lost = s.strain[i] > 0 ? s.strain[i] : Number(beyond_all);
-    const Number volume = counts[i] * s.pressure[i] * s.response[i] / lost;
+    const Number yields = counts[i] * input.gives_way[i], size = std::fabs(s.strain[i]);
+    const Number of_middle = caution_of_mean(x[i]) * std::fabs(fall[i] - 1);
+    const Number rigid_error = yields * (spread * of_middle + rounding<Number>);
+    const Number first_error = yields * (spread_of_cube * larger(missed, typical) + rounding<Number>);
+    const Number volume = counts[i] * s.pressure[i] * s.response[i] / (size > 0 ? size : Number(beyond_all));
     found.compliance[i] = larger(found.compliance[i], rigid_error);
     found.first_order[i] = larger(found.first_order[i], first_error);
+    found.first_order_at_middle[i] = larger(found.first_order_at_middle[i], yields * missed / caution);
     found.volume_factor[i] = larger(found.volume_factor[i], volume);
     share[i] = larger(share[i], counts[i] / (s.pressure[i] * (1 + s.gain[i])));
   }
@@ -185,35 +58,36 @@ GAITER_INLINE void tell(const ForecastInput<Number>& input, const State<Number>&
     }
 }
 
+// Of both heights together, if that is worse than what another state had: with e the error there and P the
+// pressure, sum e P over sum P, which is exact to the third order in the height.
+template <typename Number>
+GAITER_INLINE void compare(const State<Number>& low, const State<Number>& high,
+                           const PackOf<Number>& wrong_low, const PackOf<Number>& wrong_high, int doubts,
+                           const PackOf<Number>& counts, PackOf<Number>& error) {
+  GAITER_EACH {
+    const Number inverse = 1 / (low.pressure[i] + high.pressure[i]);
+    const Number below = wrong_low[i] - low.pressure[i], above = wrong_high[i] - high.pressure[i];
+    const Number mean = std::fabs(below + above) * inverse, apart = std::fabs(below - above) * inverse;
+    // The next order, larger where the two are small together by chance.
+    const Number beyond = Number(0.03) * apart * apart / (mean + apart + least<Number>);
+    const Number doubt = larger(low.doubt[i], high.doubt[i]);
+    const Number found = caution_of_two * mean + beyond + doubts * doubt + rounding<Number>;
+    error[i] = larger(error[i], counts[i] * found);
+  }
+}
+
 }  // namespace
 
 template <typename Number>
 GAITER_INLINE void QuickForecast<Number>::work_out(const Input& input, const Pack& rest_counts,
                                                    const Pack& actuated_counts) {
   const bool voltage = input.energised;
-  Pressing<Number> undeformed, end;
-  State<Number> rest, actuated;
-  Pack none, wider, strain, slack_slope;
-  GAITER_EACH {
-    none[i] = slack_slope[i] = 0;
-    sure[i] = 1;
-  }
-  for (const auto& term : input.terms)
-    GAITER_EACH slack_slope[i] += term.mu[i] * term.alpha[i] * input.log_area[i] * input.middle[i];
-  press(input, voltage, none, undeformed);
-  Pressing<Number> passive = undeformed;
-  GAITER_EACH passive.relief[i] = passive.relief_slope[i] = 0;
-  correct(input, passive, slack_slope, sure, rest);
-  step(input, false, sure, rest);
-  if (voltage) {
-    correct(input, undeformed, slack_slope, sure, actuated);
-    GAITER_EACH {
-      const Number relieved = rest.pressure[i] - undeformed.relief[i] / (1 + rest.gain[i]);
-      const bool better = (input.gives_way[i] > 0) & (relieved > Number(0.3) * rest.pressure[i]);
-      actuated.pressure[i] = better ? relieved : actuated.pressure[i];
-    }
-    step(input, true, sure, actuated);
-  }
+  States<Number> states;
+  Pressing<Number> end;
+  Pack none, wider, strain;
+  find_states(input, sure, states);
+  const auto& [undeformed, rest, actuated] = states;
+  GAITER_EACH none[i] = 0;
   strain_law(input, none, strain, wider);
   GAITER_EACH wider[i] = (1 - std::fabs(input.taper[i])) * (1 - input.gives_way[i] * strain[i]) - 1;
   press(input, voltage, wider, end);
@@ -229,7 +103,7 @@ GAITER_INLINE void QuickForecast<Number>::work_out(const Input& input, const Pac
   poles_ = {};
   share_ = {};
   GAITER_EACH {
-    compliance[i] = first_order[i] = 0;
+    compliance[i] = first_order[i] = first_order_at_middle[i] = 0;
     volume_factor[i] = drop_factor[i] = 1;
   }
   tell(input, rest, rest_counts, *this, share_, poles_);
@@ -250,6 +124,36 @@ GAITER_INLINE void QuickForecast<Number>::work_out(const Input& input, const Pac
   }
 }
 
+template <typename Number>
+GAITER_INLINE void QuickForecast<Number>::work_out_again(Input& input, const Pack& rest_counts,
+                                                         const Pack& actuated_counts) {
+  const Pack gap = input.gap, leg_radius = input.leg_radius;
+  std::array<States<Number>, 2> at;
+  std::array<Pack, 2> each;
+  for (int k = 0; k < 2; ++k) {
+    const Number place = (2 * k - 1) * Number(0.57735026918962576);  // Gauss, 2 points on (-1, 1)
+    GAITER_EACH {
+      const Number wider = leg_radius[i] * input.taper[i] * place;
+      input.gap[i] = gap[i] + wider;
+      input.leg_radius[i] = leg_radius[i] + wider;
+      input.slack[i] = larger(input.gap[i] / input.leg_radius[i], least<Number>);
+    }
+    limit_pressure(input);
+    find_states(input, each[k], at[k]);
+  }
+  GAITER_EACH {
+    sure[i] *= each[0][i] * each[1][i];
+    compliance[i] = first_order[i] = 0;
+  }
+  const auto take = [&](const State<Number>& low, const State<Number>& high, const Pack& counts) {
+    compare(low, high, low.rigid, high.rigid, 1, counts, compliance);
+    compare(low, high, low.first, high.first, 3, counts, first_order);
+  };
+  take(at[0].rest, at[1].rest, rest_counts);
+  if (input.energised) take(at[0].actuated, at[1].actuated, actuated_counts);
+  GAITER_EACH sure[i] *= compliance[i] + first_order[i] < beyond_all ? 1 : 0;
+}
+
 template <>
 GAITER_MULTIVERSION void QuickForecast<double>::analyse(const Input& input, const Pack& rest,
                                                         const Pack& actuated) {
@@ -260,6 +164,18 @@ template <>
 GAITER_MULTIVERSION void QuickForecast<float>::analyse(const Input& input, const Pack& rest,
                                                        const Pack& actuated) {
   work_out(input, rest, actuated);
+}
+
+template <>
+GAITER_MULTIVERSION void QuickForecast<double>::look_again(Input& input, const Pack& rest,
+                                                           const Pack& actuated) {
+  work_out_again(input, rest, actuated);
+}
+
+template <>
+GAITER_MULTIVERSION void QuickForecast<float>::look_again(Input& input, const Pack& rest,
+                                                          const Pack& actuated) {
+  work_out_again(input, rest, actuated);
 }
 
 template <typename Number>

@@ -129,7 +129,9 @@ double SegmentForecast::spread(const State& s, double power) const {
 
 double SegmentForecast::compliance_error() const {
   return worst([&](const State& s) {
-    return s.rigid > 0 ? caution_of_mean * spread(s, 1) * std::fabs(s.rigid / s.pressure - 1) : 0.0;
+    const double raised = std::fabs(taper_ * s.slope / s.pressure);
+    const double of_middle = std::fabs(s.rigid / s.pressure - 1);
+    return s.rigid > 0 ? caution_of_mean(raised) * spread(s, 1) * of_middle : 0.0;
   });
 }
 

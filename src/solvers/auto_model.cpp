@@ -29,40 +29,19 @@ constexpr int most_smooth_slices = 12;  // beyond, slices are checked once solve
 constexpr double error_of_two_slices = 0.035;
 constexpr int most_sliding_slices = 192;
 constexpr int most_refinements = 3;
-constexpr double shares_model = 0.7;  // of the tolerance that the model's error may take
-constexpr double strict_tolerance = 5e-5, strict_share = 0.05;  // likewise, of small ones
+// Of the tolerance, what the model's error may take: the rigid leg's, and that of the first order, from
+// mid-height alone, where the tolerance is small, and from two heights.
+constexpr double share_of_rigid = 0.9, share_of_first_order = 0.7, strict_tolerance = 5e-5,
+                 strict_share = 0.05, share_if_known = 0.98;
+// An error of the first order at mid-height, over the tolerance, up to which it is worth another look.
+constexpr double may_suffice = 1.6;
+// Below, the error that the fewest slices tell of themselves is mostly too large, and one more is cheaper.
+constexpr double tolerance_of_fewest_slices = 3e-6;
 constexpr double least_in_single = 1e-4;  // accuracy for which quick forecasts in single precision do
 constexpr double share_of_slices = 0.3;   // of the goal, for slices that finer models' errors are added to
 
-// Measured on one core of a 2.1 GHz x86-64 server, large batches [s]; of a slice in one state, and of its
-// pressure at one wall point, per Ogden term.
-constexpr double cost_of_segment = 0.14e-6;
-constexpr double cost_of_rigid_slice = 8e-9, cost_of_corrected_slice = 19e-9, cost_of_slice = 128e-9;
-constexpr double cost_of_own_error = 3e-9;
-constexpr double cost_of_rigid_pressure = 2e-9, cost_of_pressure = 13e-9;
-constexpr double cost_of_sliding_slice = 8e-6;
-constexpr double cost_of_quick_forecast = 0.13e-6, cost_of_forecast = 0.5e-6;
-constexpr double cost_of_finite_elements = 0.04;  // at refinement 0; four times more with each
-
-}  // namespace
-
-double plan_cost(const model::Scene& scene, std::size_t segment, const SlicePlan& plan) {
-  const int states = plan.actuated && scene.bandage.modules[segment].voltage != 0 ? 2 : 1;
-  const double slices = static_cast<double>(plan.slice_count) * (1 + static_cast<double>(plan.cuts.size()));
-  if (plan.fidelity == Fidelity::axisym)
-    return states * cost_of_finite_elements * std::pow(4, plan.slice_count);
-  if (plan.fidelity == Fidelity::sliding) return states * cost_of_sliding_slice * slices;
-  const double points = plan.wall_points * static_cast<double>(scene.bandage.ogden.size());
-  const bool solved = plan.fidelity == Fidelity::slice;
-  const double slice = (solved                                   ? cost_of_slice
-                        : plan.fidelity == Fidelity::first_order ? cost_of_corrected_slice
-                                                                 : cost_of_rigid_slice) +
-                       (plan.slice_count >= physics::fewest_for_height_error ? cost_of_own_error : 0) +
-                       points * (solved ? cost_of_pressure : cost_of_rigid_pressure);
-  return cost_of_segment + states * slices * slice;
-}
-
-namespace {
+// Measured as those of plan_cost [s].
+constexpr double cost_of_quick_forecast = 0.13e-6, cost_of_second_look = 0.12e-6, cost_of_forecast = 0.5e-6;
 
 // Errors of the wanted outputs over those of the pressure.
 template <typename Forecast>
@@ -99,6 +78,8 @@ bool choose_points(const Forecast& forecast, SlicePlan& plan) {
   while ((plan.height_error = forecast.height_error(plan.slice_count)) > left &&
          plan.slice_count < Forecast::most_slices)
     plan.slice_count += 1 + plan.slice_count / most_smooth_slices;
+  if (plan.slice_count == physics::fewest_for_height_error && tolerance < tolerance_of_fewest_slices)
+    ++plan.slice_count;
   if (cut && error_of_two_slices < left) {
     plan.slice_count = 2;
     plan.height_error = error_of_two_slices;
@@ -116,10 +97,11 @@ bool choose_points(const Forecast& forecast, SlicePlan& plan) {
 }
 
 // Rigid leg, first order or slices, to an accuracy of the wanted outputs. `contact`: somewhere the bandage
-// presses on the leg, and does so from end to end. False as choose_points.
+// presses on the leg, and does so from end to end; `known`: the models' errors are, from two heights. False
+// as choose_points.
 template <typename Forecast>
 bool choose_model(const model::Scene& scene, const model::Goal& goal, double accuracy,
-                  const Forecast& forecast, bool contact, SlicePlan& plan) {
+                  const Forecast& forecast, bool contact, bool known, SlicePlan& plan) {
   plan.factor = worst_factor(goal, forecast);
   const double tolerance = plan.asked = accuracy / plan.factor;
   plan.actuated = goal.actuated();
@@ -129,10 +111,11 @@ bool choose_model(const model::Scene& scene, const model::Goal& goal, double acc
     plan.fidelity = Fidelity::rigid;
   } else if (contact) {
     const double rigid = forecast.compliance_error(), first = forecast.first_order_error();
-    if (!goal.volume_change && rigid < shares_model * tolerance) {
+    const double cautious = tolerance < strict_tolerance ? strict_share : share_of_first_order;
+    if (!goal.volume_change && rigid < (known ? share_if_known : share_of_rigid) * tolerance) {
       plan.fidelity = Fidelity::rigid;
       plan.model_error = rigid;
-    } else if (first < (tolerance < strict_tolerance ? strict_share : shares_model) * tolerance) {
+    } else if (first < (known ? share_if_known : cautious) * tolerance) {
       plan.fidelity = Fidelity::first_order;
       plan.model_error = first;
     }
@@ -153,7 +136,7 @@ SlicePlan plan_for(const model::Scene& scene, std::size_t segment, SegmentForeca
   SlicePlan plan;
   plan.cuts = forecast.cuts();
   const bool contact = plan.cuts.empty() && !forecast.open_everywhere();
-  choose_model(scene, goal, accuracy, forecast, contact, plan);
+  choose_model(scene, goal, accuracy, forecast, contact, false, plan);
   plan.cost = cost_of_quick_forecast + cost_of_forecast + plan_cost(scene, segment, plan);
   return plan;
 }
@@ -180,6 +163,53 @@ SlicePlan plan_segment(const model::Scene& scene, std::size_t segment) {
   return plan_for(scene, segment, forecast, higher.asked * plan.factor);
 }
 
+namespace {
+
+// The plans of `chosen` tasks that quick forecasts can make. Where first order may suffice but the forecast
+// at mid-height is too cautious to tell, it looks again. The other tasks are added to `doubtful`.
+template <typename Number>
+void plan_quickly(std::span<const SegmentTask> tasks, std::span<const std::size_t> chosen,
+                  std::vector<SlicePlan>& plans, std::vector<std::size_t>& doubtful) {
+  thread_local std::vector<std::size_t> contested, unsure;
+  contested.clear();
+  const auto choose = [&](std::size_t t, const QuickSegment<Number>& forecast, bool known, SlicePlan& plan) {
+    const model::Scene& scene = *tasks[t].scene;
+    const model::Goal goal = scene.goal.of(tasks[t].segment);
+    if (!choose_model(scene, goal, accuracy_of_slices(goal), forecast, true, known, plan)) return false;
+    plan.cost = cost_of_quick_forecast + plan_cost(scene, tasks[t].segment, plan);
+    return true;
+  };
+  const auto counted = [&](std::size_t t) {
+    return counted_states(tasks[t].scene->goal.of(tasks[t].segment));
+  };
+  forecast_quickly<Number>(
+      tasks, chosen, Look::once, counted,
+      [&](std::size_t t, const QuickSegment<Number>& forecast) {
+        SlicePlan& plan = plans[t];
+        plan.cuts.clear();
+        if (!choose(t, forecast, false, plan)) return false;
+        if (plan.fidelity == Fidelity::slice && forecast.first_order_at_middle() < may_suffice * plan.asked)
+          contested.push_back(t);
+        return true;
+      },
+      doubtful);
+  if (contested.empty()) return;
+  for (const std::size_t t : contested) plans[t].cost += cost_of_second_look;
+  // Slices remain where one of the heights is not sure.
+  forecast_quickly<Number>(
+      tasks, contested, Look::twice, counted,
+      [&](std::size_t t, const QuickSegment<Number>& forecast) {
+        SlicePlan simpler = plans[t];
+        if (!choose(t, forecast, true, simpler)) return false;
+        simpler.cost += cost_of_second_look;
+        plans[t] = simpler;
+        return true;
+      },
+      unsure);
+}
+
+}  // namespace
+
 void plan_segments(std::span<const SegmentTask> tasks, std::vector<SlicePlan>& plans) {
   thread_local std::vector<std::size_t> roughly, finely, doubtful;
   thread_local std::vector<SegmentForecast> forecasts;
@@ -187,25 +217,11 @@ void plan_segments(std::span<const SegmentTask> tasks, std::vector<SlicePlan>& p
   for (auto* chosen : {&roughly, &finely, &doubtful}) chosen->clear();
   for (std::size_t t = 0; t < tasks.size(); ++t) {
     const model::Goal& goal = tasks[t].scene->goal;
-    (goal.up_to != Fidelity::slice      ? doubtful
-     : goal.accuracy >= least_in_single ? roughly
-                                        : finely)
-        .push_back(t);
+    const bool slices = goal.up_to == Fidelity::slice;
+    (!slices ? doubtful : goal.accuracy < least_in_single ? finely : roughly).push_back(t);
   }
-  const auto counted = [&](std::size_t t) {
-    return counted_states(tasks[t].scene->goal.of(tasks[t].segment));
-  };
-  const auto told = [&](std::size_t t, const auto& forecast) {
-    const auto& [scene, segment, none] = tasks[t];
-    SlicePlan& plan = plans[t];
-    plan.cuts.clear();
-    const double accuracy = accuracy_of_slices(scene->goal);
-    if (!choose_model(*scene, scene->goal.of(segment), accuracy, forecast, true, plan)) return false;
-    plan.cost = cost_of_quick_forecast + plan_cost(*scene, segment, plan);
-    return true;
-  };
-  forecast_quickly<float>(tasks, roughly, counted, told, doubtful);
-  forecast_quickly<double>(tasks, finely, counted, told, doubtful);
+  plan_quickly<float>(tasks, roughly, plans, doubtful);
+  plan_quickly<double>(tasks, finely, plans, doubtful);
   forecasts.clear();
   for (const std::size_t t : doubtful) forecasts.emplace_back(*tasks[t].scene, tasks[t].segment);
   SegmentForecast::analyse(forecasts);

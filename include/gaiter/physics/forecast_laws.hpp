@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "gaiter/physics/forecast_kernel.hpp"
+#include "gaiter/physics/leg_law.hpp"
 
 // What the forecasts' loops over packs have in common. Constants are written as floats, which numbers of
 // either precision take without a conversion of their own.
@@ -23,7 +24,6 @@ constexpr Number least = 1 / std::numeric_limits<Number>::max();
 constexpr float caution = 2;
 constexpr float caution_of_leg = 2;
 constexpr float caution_of_wall = 1.2f;
-constexpr float caution_of_mean = 1.3f;  // where the value at mid-height stands for the mean over the height
 
 template <typename Number>
 GAITER_INLINE Number clamped(Number x) {
@@ -34,6 +34,13 @@ GAITER_INLINE Number clamped(Number x) {
 template <typename Number>
 GAITER_INLINE Number larger(Number a, Number b) {
   return a > b ? a : b;
+}
+
+// Where the value at mid-height stands for the mean over the height, from where the pressure is by a part
+// `raised` larger at an end.
+template <typename Number>
+GAITER_INLINE Number caution_of_mean(Number raised) {
+  return Number(1.03) + (raised < 1 ? raised : Number(1));
 }
 
 // Each in a loop by itself: a call among other work would have all registers saved around it.
@@ -58,16 +65,19 @@ GAITER_INLINE void strain_law(const ForecastInput<Number>& input, const PackOf<N
                               PackOf<Number>& strain, PackOf<Number>& response) {
   const auto& leg = input.leg;
   if (input.material == model::LegMaterial::neo_hookean) {
-    PackOf<Number> y;
-    GAITER_EACH y[i] = 1;  // (r/R_c)^2
+    // (1 - y) (K + G/3 y^(-5/3)) = P by Newton's method, y = (r/R_c)^2.
+    PackOf<Number> y, stiffness;
+    GAITER_EACH y[i] = 1 / (1 + pressure[i] / leg[2][i]);
     for (int k = 0; k < 4; ++k) GAITER_EACH {
-        const Number low = larger(y[i], Number(0.05f));
-        y[i] = 1 - pressure[i] / (leg[0][i] + leg[1][i] * std::exp(std::log(low) * Number(-5.0 / 3)));
+        constexpr Number power = Number(5.0 / 3);
+        const Number low = larger(y[i], Number(0.05f)), shear = leg[1][i] * std::exp(-power * std::log(low));
+        stiffness[i] = leg[0][i] + shear * (1 + power * (1 - low) / low);
+        y[i] = low + ((1 - low) * (leg[0][i] + shear) - pressure[i]) / stiffness[i];
       }
     GAITER_EACH {
       const Number ratio = std::sqrt(larger(y[i], Number(0.05f)));
       strain[i] = 1 - ratio;
-      response[i] = 0.5f / (leg[2][i] * ratio);
+      response[i] = 0.5f / (stiffness[i] * ratio);
     }
     return;
   }
@@ -82,6 +92,20 @@ GAITER_INLINE void strain_law(const ForecastInput<Number>& input, const PackOf<N
     const Number growing = leg[0][i] * grown[i], decaying = leg[2][i] * decayed[i];
     strain[i] = growing + decaying;
     response[i] = leg[1][i] * growing + leg[3][i] * decaying;
+  }
+}
+
+// The pressure at which the leg's strain leaves the bandage slack.
+template <typename Number>
+GAITER_INLINE void limit_pressure(ForecastInput<Number>& input) {
+  const auto& leg = input.leg;
+  if (input.material == model::LegMaterial::neo_hookean) {
+    GAITER_EACH input.pressure_limit[i] = neo_hookean_pressure_bound(leg[0][i], leg[1][i], input.slack[i]);
+    return;
+  }
+  GAITER_EACH {
+    const Number none = leg[0][i] + leg[2][i];
+    input.pressure_limit[i] = strain_law_pressure_bound(leg[0][i], none, input.slack[i]) / leg[1][i];
   }
 }
 

@@ -21,6 +21,7 @@ class QuickForecast {
 
   Pack sure;                        // 1 or 0
   Pack compliance, first_order;     // errors of the rigid leg, of the first-order correction
+  Pack first_order_at_middle;       // likewise, at mid-height alone and without caution
   Pack drop_factor, volume_factor;  // as SegmentForecast's
 
   // Errors of Gauss rules of so many points; few are ever asked for.
@@ -30,8 +31,13 @@ class QuickForecast {
   // `rest`, `actuated`: 1 where that state's pressure counts, else 0.
   void analyse(const Input& input, const Pack& rest, const Pack& actuated);
 
+  // After analyse(), works out `compliance` and `first_order` anew, for about as much again, from two heights
+  // and the pressures' own errors there: far closer, with hardly any caution. The input is used up.
+  void look_again(Input& input, const Pack& rest, const Pack& actuated);
+
  private:
   void work_out(const Input& input, const Pack& rest, const Pack& actuated);
+  void work_out_again(Input& input, const Pack& rest, const Pack& actuated);
 
   Pack tapers_;  // 1 or 0
   Pack share_;   // the most that an error of the rigid leg's pressure counts for [1/Pa]

@@ -21,6 +21,7 @@ struct QuickSegment {
 
   double compliance_error() const { return pack.compliance[place]; }
   double first_order_error() const { return pack.first_order[place]; }
+  double first_order_at_middle() const { return pack.first_order_at_middle[place]; }
   double height_error(int slices) const { return pack.height_error(place, slices); }
   double wall_error(int points) const { return pack.wall_error(place, points); }
   double drop_factor() const { return pack.drop_factor[place]; }
@@ -32,10 +33,12 @@ struct CountedStates {
   bool rest = true, actuated = true;
 };
 
+enum class Look { once, twice };  // at mid-height, or also at two heights
+
 // Quick forecasts of the `chosen` tasks, whose counted(task) states say the errors; those that are sure are
 // told(task, QuickSegment). Tasks of which they are not, or told() is false, are added to `doubtful`.
 template <typename Number, typename Counted, typename Told>
-void forecast_quickly(std::span<const SegmentTask> tasks, std::span<const std::size_t> chosen,
+void forecast_quickly(std::span<const SegmentTask> tasks, std::span<const std::size_t> chosen, Look look,
                       Counted&& counted, Told&& told, std::vector<std::size_t>& doubtful) {
   // Large, so that it is kept for the next batch.
   thread_local physics::ForecastInput<Number> input;
@@ -55,6 +58,7 @@ void forecast_quickly(std::span<const SegmentTask> tasks, std::span<const std::s
     }
     input.close(count);
     quick.analyse(input, rest, actuated);
+    if (look == Look::twice) quick.look_again(input, rest, actuated);
     for (int place = 0; place < count; ++place)
       if (!(quick.sure[place] > 0 && told(some[place], QuickSegment<Number>{quick, place})))
         doubtful.push_back(some[place]);
