@@ -31,17 +31,27 @@ constexpr int most_sliding_slices = 192;
 constexpr int most_refinements = 3;
 constexpr double shares_model = 0.7;  // of the tolerance that the model's error may take
 constexpr double strict_tolerance = 5e-5, strict_share = 0.05;  // likewise, of small ones
+// Of the tolerance, what Newton's method may leave, and never more of a pressure than the second.
+constexpr double share_of_newton = 0.05, newton_leaves_at_most = 0.01;
 constexpr double share_of_slices = 0.3;  // of the goal, for slices that finer models' errors are added to
 
 // Measured on one core of a 2.1 GHz x86-64 server, large batches [s]; of a slice in one state, and of its
 // pressure at one wall point, per Ogden term.
 constexpr double cost_of_segment = 0.14e-6;
 constexpr double cost_of_rigid_slice = 8e-9, cost_of_corrected_slice = 19e-9, cost_of_slice = 128e-9;
+// Of the steps that Newton's method is spared by each power of two of what it may leave.
+constexpr double cost_of_newton_octave = 2.7e-9;
+constexpr int least_octave = -33, most_octave = -10;
 constexpr double cost_of_own_error = 3e-9;
 constexpr double cost_of_rigid_pressure = 2e-9, cost_of_pressure = 13e-9;
 constexpr double cost_of_sliding_slice = 8e-6;
 constexpr double cost_of_quick_forecast = 0.13e-6, cost_of_forecast = 0.5e-6;
 constexpr double cost_of_finite_elements = 0.04;  // at refinement 0; four times more with each
+
+// Powers of two by which Newton's method may leave more than what takes it a step less.
+int newton_octaves(double leaves) {
+  return leaves > 0 ? std::clamp(std::ilogb(leaves), least_octave, most_octave) - least_octave : 0;
+}
 
 }  // namespace
 
@@ -57,7 +67,8 @@ double plan_cost(const model::Scene& scene, std::size_t segment, const SlicePlan
                         : plan.fidelity == Fidelity::first_order ? cost_of_corrected_slice
                                                                  : cost_of_rigid_slice) +
                        (plan.slice_count >= physics::fewest_for_height_error ? cost_of_own_error : 0) +
-                       points * (solved ? cost_of_pressure : cost_of_rigid_pressure);
+                       points * (solved ? cost_of_pressure : cost_of_rigid_pressure) -
+                       (solved ? cost_of_newton_octave * newton_octaves(plan.newton_leaves) : 0);
   return cost_of_segment + states * slices * slice;
 }
 
@@ -100,6 +111,7 @@ int common_count(int slices) {
 template <typename Forecast>
 bool choose_points(const Forecast& forecast, SlicePlan& plan) {
   const double tolerance = plan.tolerance;
+  plan.newton_leaves = std::min(share_of_newton * tolerance, newton_leaves_at_most);
   const bool cut = !plan.cuts.empty();
   const double for_wall = (cut ? 0.1 : 0.25) * tolerance;
   plan.wall_points = 1;

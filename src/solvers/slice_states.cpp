@@ -89,6 +89,7 @@ void SliceModel::solve_doubtful(bool at_rest) {
       if (!(highest > 0)) continue;
       const auto found = physics::contact_interval(system_, k * pack_width + i, highest, at_rest);
       state.open[i] = found ? 1 : 0;
+      state.may_leave[i] = 0;
       if (found) {
         state.low[i] = std::min(found->from, found->to);
         state.high[i] = std::max(found->from, found->to);
@@ -154,8 +155,9 @@ void SliceModel::small_drops() {
     for (int i = 0; i < block.segments.count; ++i) {
       const double part = outcomes.actuation_pressure[i] / outcomes.pressure_rest[i];
       const double drop = outcomes.actuation_drop[i];
+      const double exact = std::max(enough, states_[k].may_leave[i]) * drop;
       const bool small =
-          drop < small_drop * outcomes.pressure_rest[i] || outcomes.error_of_difference[i] > enough * drop;
+          drop < small_drop * outcomes.pressure_rest[i] || outcomes.error_of_difference[i] > exact;
       const bool resolved = part > 0 && part < parts_of_drop.back();
       if (!small || !resolved || !(outcomes.pressure_actuated[i] > 0)) continue;
       const auto range = std::upper_bound(parts_of_drop.begin(), parts_of_drop.end(), part);
