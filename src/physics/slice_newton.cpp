@@ -210,7 +210,9 @@ void advance_newton(const SliceShape& shape, const Pack* rows, const Pack& direc
     const double curved = 0.5 * bend * next * (next / (ahead ? kept : 1.0));
     const double beyond = left_caution * (error > curved ? error : curved);
     const bool small = error <= tolerance * trial[i] || next <= noise;
-    const bool enough = ahead && beyond <= state.may_leave[i] * kept;
+    // Likewise of the radius, which a leg that is being crushed changes faster than the pressure.
+    const bool enough = ahead && beyond <= state.may_leave[i] * kept &&
+                        strain_slope[i] * beyond <= state.may_leave[i] * (1 - strain[i]);
     const bool closing = residual == 0 || (near && slope > 0 && (small || enough)) || collapsed;
     const bool polish = closing && ahead;
 

@@ -40,8 +40,8 @@ constexpr double share_of_slices = 0.3;  // of the goal, for slices that finer m
 constexpr double cost_of_segment = 0.14e-6;
 constexpr double cost_of_rigid_slice = 8e-9, cost_of_corrected_slice = 19e-9, cost_of_slice = 128e-9;
 // Of the steps that Newton's method is spared by each power of two of what it may leave.
-constexpr double cost_of_newton_octave = 2.7e-9;
-constexpr int least_octave = -33, most_octave = -10;
+constexpr double cost_of_newton_octave = 3.5e-9;
+constexpr int least_octave = -28, most_octave = -8;
 constexpr double cost_of_own_error = 3e-9;
 constexpr double cost_of_rigid_pressure = 2e-9, cost_of_pressure = 13e-9;
 constexpr double cost_of_sliding_slice = 8e-6;

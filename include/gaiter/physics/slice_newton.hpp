@@ -22,7 +22,7 @@ struct PackState {
   Pack left;            // error of the pressure that closing leaves, as predicted
   Pack settled_slope;   // d P_t / d eps where it closed
   Pack smallest_slope;  // least f' seen: near or below 0 there may be several equilibria
-  Pack may_leave;       // part of the pressure that `left` may be; 0, which no start changes: the least
+  Pack may_leave;  // part of the pressure that `left` may be, and of the radius; 0: the least; starts keep it
   Pack iterations;
   Pack open;    // 1 while the slice is being solved, else 0
   Pack failed;  // 1 where the fixed point left the admissible range
