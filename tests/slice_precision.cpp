@@ -104,6 +104,48 @@ TEST(EarlyEnd, OfRandomSlices) {
   }
 }
 
+// By a plan: less work, the same statuses, no more of a pressure left than allowed or than is told; and the
+// options' word counts for more.
+TEST(EarlyEnd, AsFarAsAPlanAllows) {
+  for (const auto material : {model::LegMaterial::compliance, model::LegMaterial::neo_hookean}) {
+    samples::Sampler sampler(12);
+    std::vector<model::Scene> scenes;
+    for (int k = 0; k < 1500; ++k) scenes.push_back(sampler.scene(material, 1));
+    const auto solve = [&](double leaves) {
+      const solvers::SlicePlan plan{.slice_count = 1, .wall_points = 8, .newton_leaves = leaves};
+      std::vector<solvers::SegmentTask> tasks;
+      for (const model::Scene& scene : scenes) tasks.push_back({&scene, 0, &plan});
+      return solvers::solve_segments(PETSC_COMM_SELF, tasks);
+    };
+    const auto exact = solve(0);
+    for (const double leaves : {1e-2, 1e-4, 1e-7}) {
+      const auto found = solve(leaves);
+      int steps = 0, steps_of_exact = 0, pressing = 0;
+      for (std::size_t i = 0; i < scenes.size(); ++i) {
+        ASSERT_EQ(found[i].status, exact[i].status) << i;
+        steps += found[i].iterations;
+        steps_of_exact += exact[i].iterations;
+        if (!(exact[i].pressure_actuated > 0)) continue;
+        ++pressing;
+        const double told = found[i].discretisation_error, sure = exact[i].discretisation_error;
+        EXPECT_LE(told, 1.001 * (sure + leaves)) << i;
+        EXPECT_NEAR(found[i].pressure_rest, exact[i].pressure_rest, (told + sure) * exact[i].pressure_rest)
+            << i;
+        EXPECT_NEAR(found[i].pressure_actuated, exact[i].pressure_actuated,
+                    (told + sure) * exact[i].pressure_actuated)
+            << i;
+        EXPECT_GE(found[i].actuation_drop, 0) << i;
+      }
+      EXPECT_LT(steps, 0.95 * steps_of_exact) << leaves;
+      EXPECT_GT(pressing, 700);
+    }
+    const tasks::Option tight("-slice_snes_rtol", "1e-12");
+    const auto by_option = solve(1e-2);
+    for (std::size_t i = 0; i < scenes.size(); ++i)
+      EXPECT_TRUE(tasks::same_bits(tasks::numbers_of(by_option[i]), tasks::numbers_of(exact[i]))) << i;
+  }
+}
+
 TEST(SinglePrecision, OfRandomCones) {
   std::vector<model::Scene> scenes;
   for (const ConeCase& cone : draw_cones(100, 600)) {

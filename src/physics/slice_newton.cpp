@@ -75,12 +75,15 @@ void start_at_rest(const SliceShape& shape, const Pack* rows, PackState& state, 
 
 GAITER_MULTIVERSION
 void start_actuated(const SliceShape& shape, const Pack* rows, PackState& state) {
-  Pack relief, slope;
+  Pack relief, slope, pressure_at_most;
+  // The one at rest may be a little larger than where an early end left it.
+  GAITER_EACH pressure_at_most[i] = state.pressure[i] + (state.may_leave[i] > 0 ? state.left[i] : 0);
   initialise(state);
   actuation_pressure(shape, rows, state.strain, relief, slope);
   GAITER_EACH {
     const bool pressing = state.pressure[i] > 0;
-    state.high[i] = state.rounding[i] = state.pressure[i];
+    state.high[i] = pressure_at_most[i];
+    state.rounding[i] = state.pressure[i];
     state.open[i] = pressing ? 1 : 0;
     state.strain_residual[i] = 0;
     state.pressure_residual[i] = pressing ? relief[i] : 0;
@@ -195,13 +198,23 @@ void advance_newton(const SliceShape& shape, const Pack* rows, const Pack& direc
     const double noise = 2 * finest * (trial[i] + rounding / (slope > 1 ? slope : 1));
     const bool collapsed = high - low <= 2 * finest * high;
     const bool near = !(bandage[i] < -crushing * trial[i]);
-    const bool closing =
-        residual == 0 || (near && slope > 0 && (error <= tolerance * trial[i] || next <= noise)) || collapsed;
     const double polished = trial[i] - residual / slope;
     // A slice that closes on the error after this last step must take it, to the end of its bracket if need
     // be.
     const double kept = polished < high ? polished : high;
-    const bool polish = closing && slope > 0 && kept > (low > 0 ? low : 0);
+    const bool ahead = slope > 0 && kept > (low > 0 ? low : 0);
+    // The constant of the convergence, as two steps tell it, may be small by chance; that of a law of powers
+    // is about the inverse of the pressure. A stiff bandage's is larger with the slope, which an early end
+    // shows.
+    const double bend = state.may_leave[i] > 0 && slope > 1 ? slope : 1;
+    const double curved = 0.5 * bend * next * (next / (ahead ? kept : 1.0));
+    const double beyond = left_caution * (error > curved ? error : curved);
+    const bool small = error <= tolerance * trial[i] || next <= noise;
+    // Likewise of the radius, which a leg that is being crushed changes faster than the pressure.
+    const bool enough = ahead && beyond <= state.may_leave[i] * kept &&
+                        strain_slope[i] * beyond <= state.may_leave[i] * (1 - strain[i]);
+    const bool closing = residual == 0 || (near && slope > 0 && (small || enough)) || collapsed;
+    const bool polish = closing && ahead;
 
     const double pressure = polish ? kept : trial[i];
     state.pressure[i] = open ? pressure : state.pressure[i];
@@ -217,10 +230,6 @@ void advance_newton(const SliceShape& shape, const Pack* rows, const Pack& direc
     // What has lifted off by less than the rounding may touch yet.
     const bool touching = trial[i] == 0 && bandage[i] + coarse * state.rounding[i] > 0;
     const double undecided = touching ? coarse * state.rounding[i] : missed;
-    // The constant of the convergence, as two steps tell it, may be small by chance; that of a law of powers
-    // is about the inverse of the pressure.
-    const double curved = 0.5 * next * (next / (polish ? kept : 1.0));
-    const double beyond = left_caution * (error > curved ? error : curved);
     state.left[i] = open && closing ? (polish ? beyond : undecided) : state.left[i];
     state.settled_slope[i] = open ? steep : state.settled_slope[i];
     state.iterations[i] += state.open[i];

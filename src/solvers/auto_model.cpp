@@ -37,6 +37,8 @@ constexpr double share_of_rigid = 0.9, share_of_first_order = 0.7, strict_tolera
 constexpr double may_suffice = 1.6;
 // Below, the error that the fewest slices tell of themselves is mostly too large, and one more is cheaper.
 constexpr double tolerance_of_fewest_slices = 3e-6;
+// Of the tolerance, what Newton's method may leave, and never more of a pressure than the second.
+constexpr double share_of_newton = 0.05, newton_leaves_at_most = 0.01;
 constexpr double least_in_single = 1e-4;  // accuracy for which quick forecasts in single precision do
 constexpr double share_of_slices = 0.3;   // of the goal, for slices that finer models' errors are added to
 
@@ -64,6 +66,7 @@ int common_count(int slices) {
 template <typename Forecast>
 bool choose_points(const Forecast& forecast, SlicePlan& plan) {
   const double tolerance = plan.tolerance;
+  plan.newton_leaves = std::min(share_of_newton * tolerance, newton_leaves_at_most);
   const bool cut = !plan.cuts.empty();
   const double for_wall = (cut ? 0.1 : 0.25) * tolerance;
   plan.wall_points = 1;

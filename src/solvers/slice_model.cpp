@@ -213,6 +213,19 @@ void SliceModel::prepare_solver(model::SliceSolver algorithm, double fixed_point
                                           newton_tolerance);
 }
 
+// What Newton's method may leave, by the plans. A bandage that may have several equilibria is not rushed to
+// one.
+void SliceModel::allow_newton() {
+  const bool allowed = planned_ && !solver_->tolerance_given();
+  Pack may_leave{};
+  for (const Block& block : blocks_) {
+    const Pack& stiffens = block.segments.constants.stiffens;
+    for (std::size_t i = 0; allowed && i < block.tasks.size(); ++i)
+      may_leave[i] = stiffens[i] > 0 ? tasks_[block.tasks[i]].plan->newton_leaves : 0;
+    for (std::size_t k = block.first_pack; k < block.end_pack(); ++k) states_[k].may_leave = may_leave;
+  }
+}
+
 // On a leg that does not give way.
 void SliceModel::rigid_pressures() {
   const Pack none{};
@@ -272,6 +285,7 @@ std::span<const model::SegmentResult> SliceModel::solve(std::span<const SegmentT
     prepare_solver(newton_ ? model::SliceSolver::newton : model::SliceSolver::fixed_point,
                    petsc::largest(comm_, scene ? scene->discretisation.fixed_point_tolerance : 0),
                    petsc::largest(comm_, scene ? scene->discretisation.newton_tolerance : 0));
+    allow_newton();
     rest();
     rigid_pressures();
     if (energised_) actuate();

@@ -62,6 +62,10 @@ SliceSolver::SliceSolver(MPI_Comm comm, std::size_t packs, model::SliceSolver al
 
 PetscErrorCode SliceSolver::create(MPI_Comm comm, double newton_tolerance) {
   PetscFunctionBegin;
+  PetscReal given = 0;
+  PetscBool found = PETSC_FALSE;
+  PetscCall(PetscOptionsGetReal(nullptr, "slice_", "-snes_rtol", &given, &found));
+  tolerance_given_ = found == PETSC_TRUE;
   PetscCall(create_matrix(comm));
   PetscCall(BatchSolver::create(
       comm, static_cast<PetscInt>(2 * pack_width * packs_),
@@ -302,7 +306,8 @@ void SliceSolver::close_small_steps(Totals& totals) {
         state.left[i] = std::fabs(pressure[i]);
         state.settled_slope[i] = state.bandage_slope[i];
       }
-      if (std::fabs(pressure[i]) <= tolerance * std::fabs(state.pressure[i])) state.open[i] = 0;
+      const double enough = std::max(tolerance, state.may_leave[i]);
+      if (std::fabs(pressure[i]) <= enough * std::fabs(state.pressure[i])) state.open[i] = 0;
       state.iterations[i] += state.open[i];
     }
     totals.open += count_open(state);

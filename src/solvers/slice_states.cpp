@@ -30,6 +30,9 @@ constexpr int fewest_points_of_drop = 2;
 // Actuation pressures over that at rest: parts of the path between the two states on which so many points,
 // and one and two more, give the mean slope to 1e-12 even if it changes ten times as fast as the pressure.
 constexpr std::array<double, 3> parts_of_drop{5e-4, 0.01, 0.1};
+// After an early end of Newton's method, of larger parts too, where a stiff bandage still drops by little: of
+// its exponential the most points give the mean slope to 1e-8.
+constexpr double part_of_stiff_drop = 0.7;
 
 }  // namespace
 
@@ -89,6 +92,7 @@ void SliceModel::solve_doubtful(bool at_rest) {
       if (!(highest > 0)) continue;
       const auto found = physics::contact_interval(system_, k * pack_width + i, highest, at_rest);
       state.open[i] = found ? 1 : 0;
+      state.may_leave[i] = 0;
       if (found) {
         state.low[i] = std::min(found->from, found->to);
         state.high[i] = std::max(found->from, found->to);
@@ -154,11 +158,13 @@ void SliceModel::small_drops() {
     for (int i = 0; i < block.segments.count; ++i) {
       const double part = outcomes.actuation_pressure[i] / outcomes.pressure_rest[i];
       const double drop = outcomes.actuation_drop[i];
-      const bool small =
-          drop < small_drop * outcomes.pressure_rest[i] || outcomes.error_of_difference[i] > enough * drop;
-      const bool resolved = part > 0 && part < parts_of_drop.back();
+      const double may_leave = states_[k].may_leave[i];
+      const bool small = drop < small_drop * outcomes.pressure_rest[i] ||
+                         outcomes.error_of_difference[i] > std::max(enough, may_leave) * drop;
+      const bool stiff = may_leave > 0 && drop < parts_of_drop.back() * outcomes.pressure_rest[i];
+      const bool resolved = part > 0 && part < (stiff ? part_of_stiff_drop : parts_of_drop.back());
       if (!small || !resolved || !(outcomes.pressure_actuated[i] > 0)) continue;
-      const auto range = std::upper_bound(parts_of_drop.begin(), parts_of_drop.end(), part);
+      const auto range = std::upper_bound(parts_of_drop.begin(), parts_of_drop.end() - 1, part);
       small_drops_[static_cast<std::size_t>(range - parts_of_drop.begin())].push_back(k * pack_width + i);
     }
   });

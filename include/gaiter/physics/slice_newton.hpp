@@ -22,6 +22,7 @@ struct PackState {
   Pack left;            // error of the pressure that closing leaves, as predicted
   Pack settled_slope;   // d P_t / d eps where it closed
   Pack smallest_slope;  // least f' seen: near or below 0 there may be several equilibria
+  Pack may_leave;  // part of the pressure that `left` may be, and of the radius; 0: the least; starts keep it
   Pack iterations;
   Pack open;    // 1 while the slice is being solved, else 0
   Pack failed;  // 1 where the fixed point left the admissible range
@@ -56,7 +57,7 @@ double reachable(const SliceShape& shape, double tolerance);
 // One damped Newton step of each open slice, P - direction, and the residual there. Far from the solution,
 // where bandage and leg differ by more than a factor of four, Newton's step for ln P = ln P_t is taken if it
 // is the larger, though not past the middle of the bracket. A slice closes when its next step is predicted to
-// leave a relative error below `tolerance`; that step is still taken.
+// leave a relative error below `tolerance`, or surely below what it may leave; that step is still taken.
 void advance_newton(const SliceShape& shape, const Pack* rows, const Pack& direction, double tolerance,
                     PackState& state);
 

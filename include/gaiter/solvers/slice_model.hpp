@@ -30,6 +30,7 @@ struct SlicePlan {
   double model_error = 0;      // against the finest model that the goal allows
   double change_beyond = 0;    // by the models beyond this one, allowed or not; NaN: not known
   double tolerance = 0;        // of the discretisation
+  double newton_leaves = 0;    // of it, what Newton's method may leave in a slice's pressure; 0: the least
   double asked = 0;            // sum of tolerance and model_error
   double factor = 1;           // errors of the wanted outputs over those of the pressures
   double cost = 0;             // predicted, of planning and of all solves so far [s]
@@ -95,6 +96,7 @@ class SliceModel {
   void lay_slices(Block& block);
   void set_segments(std::span<const std::size_t> tasks, physics::SegmentPack& segments);
   void prepare_solver(model::SliceSolver algorithm, double fixed_point_tolerance, double newton_tolerance);
+  void allow_newton();
   void rigid_pressures();
   void solve_rigid();
   void solve_first_order();

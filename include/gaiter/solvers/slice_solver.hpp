@@ -21,9 +21,10 @@ struct SliceReport {
 // gathered into packs of their own, so that a hard slice costs only itself.
 //
 // Options (prefix slice_): -slice_snes_rtol is the relative error of a slice's pressure at which it closes,
-// -slice_snes_max_it bounds the steps; -slice_mat_type shell (default: the blocks are inverted as stored) or
-// baij (an assembled matrix, by default with point-block Jacobi); every option of SNES, KSP and PC, other
-// line searches and SNES types among them, which then damp globally.
+// or earlier, where its state says what it may leave; -slice_snes_max_it bounds the steps; -slice_mat_type
+// shell (default: the blocks are inverted as stored) or baij (an assembled matrix, by default with
+// point-block Jacobi); every option of SNES, KSP and PC, other line searches and SNES types among them, which
+// then damp globally.
 class SliceSolver : public BatchSolver {
  public:
   // @note Collective. `packs`: most packs of 64 slices that this rank will ever hand to solve().
@@ -31,6 +32,8 @@ class SliceSolver : public BatchSolver {
               double newton_tolerance = model::Discretisation{}.newton_tolerance);
 
   std::size_t packs() const { return packs_; }
+  // The options say how exact slices are to be; then none may leave more.
+  bool tolerance_given() const { return tolerance_given_; }
 
   // Sets the iterate of one pack, and its residual and slopes if these are `known`.
   using Start = std::function<void(std::size_t pack)>;
@@ -78,6 +81,7 @@ class SliceSolver : public BatchSolver {
   std::size_t packs_;
   bool newton_;
   double fixed_point_tolerance_;
+  bool tolerance_given_ = false;
   const physics::SliceSystem* system_ = nullptr;
   std::vector<physics::PackState>* states_ = nullptr;
   std::vector<Work> work_;  // packs with open slices
