@@ -152,7 +152,7 @@ TEST(Scene, OutputsOfOneSegment) {
   scene = solve_with({{"fidelity", "auto"}, {"outputs", "low.actuation_drop"}, {"accuracy", "1e-4"}}).scene;
   EXPECT_TRUE(scene.wants(0) && scene.goal.of(0).actuation_drop && !scene.goal.of(0).pressure_rest);
   EXPECT_FALSE(scene.wants(1));
-  EXPECT_EQ(scene.goal.of(0).accuracy, 1e-4);
+  EXPECT_EQ(scene.goal.accuracy, 1e-4);
   scene.fidelity = model::Fidelity::slice;  // which solves all
   EXPECT_TRUE(scene.wants(1));
   scene = solve_with({{"fidelity", "auto"}, {"outputs", "volume_change"}}).scene;

@@ -38,7 +38,7 @@ constexpr double share_of_spread = 0.4;
 constexpr double cost_of_residual = 0.0075;  // [s], of a state
 
 // Of the wanted outputs, against the finest model that the goal allows.
-double of_wanted(const model::Goal& goal, const physics::ModelError& error) {
+double of_wanted(const model::Wanted& goal, const physics::ModelError& error) {
   double worst = 0;
   if (goal.pressure_rest) worst = std::max(worst, error.pressure_rest);
   if (goal.pressure_actuated) worst = std::max(worst, error.pressure_actuated);
@@ -50,14 +50,14 @@ double of_wanted(const model::Goal& goal, const physics::ModelError& error) {
 // What slices and sliding slices lack, as far as their closed forms know.
 std::pair<double, double> closed_forms(const model::Scene& scene, std::size_t segment,
                                        const SlicePlan& slices, const model::SegmentResult& result) {
-  const model::Goal goal = scene.goal.of(segment);
-  if (goal.up_to != Fidelity::sliding) {
+  const model::Wanted& goal = scene.goal.of(segment);
+  if (scene.goal.up_to != Fidelity::sliding) {
     const physics::ModelErrors errors = physics::model_errors(scene, segment, result);
     return {of_wanted(goal, errors.slice), of_wanted(goal, errors.sliding)};
   }
   SegmentForecast forecast(scene, segment);
   SegmentForecast::analyse({&forecast, 1}, SegmentForecast::Depth::sliding);
-  forecast.want(goal.pressure_rest || goal.actuation_drop, goal.actuated());
+  forecast.want(goal.at_rest(), goal.actuated());
   return {caution_of_sliding * slices.factor * forecast.sliding_error(), 0};
 }
 
@@ -76,7 +76,7 @@ Residual by_residual(const model::Scene& scene, std::size_t segment, SlicePlan& 
   const bool energised = wanted.bandage.modules[segment].voltage != 0;
   plan.cost += cost_of_residual * (energised ? 2 : 1);
   const ResidualEstimate found = estimate_by_residual({&wanted, segment}, result, fidelity);
-  const model::Goal goal = scene.goal.of(segment);
+  const model::Wanted& goal = scene.goal.of(segment);
   Residual residual{0, found.reliable};
   const auto add = [&](bool asked, double error) {
     if (asked) residual.error = std::max(residual.error, std::isnan(error) ? unknown : std::fabs(error));

@@ -47,7 +47,7 @@ constexpr double cost_of_quick_forecast = 0.13e-6, cost_of_second_look = 0.12e-6
 
 // Errors of the wanted outputs over those of the pressure.
 template <typename Forecast>
-double worst_factor(const model::Goal& goal, const Forecast& forecast) {
+double worst_factor(const model::Wanted& goal, const Forecast& forecast) {
   double factor = 1;
   if (goal.actuation_drop) factor = std::max(factor, forecast.drop_factor());
   if (goal.volume_change) factor = std::max(factor, forecast.volume_factor());
@@ -103,7 +103,7 @@ bool choose_points(const Forecast& forecast, SlicePlan& plan) {
 // presses on the leg, and does so from end to end; `known`: the models' errors are, from two heights. False
 // as choose_points.
 template <typename Forecast>
-bool choose_model(const model::Scene& scene, const model::Goal& goal, double accuracy,
+bool choose_model(const model::Scene& scene, const model::Wanted& goal, double accuracy,
                   const Forecast& forecast, bool contact, bool known, SlicePlan& plan) {
   plan.factor = worst_factor(goal, forecast);
   const double tolerance = plan.asked = accuracy / plan.factor;
@@ -127,15 +127,10 @@ bool choose_model(const model::Scene& scene, const model::Goal& goal, double acc
   return choose_points(forecast, plan);
 }
 
-CountedStates counted_states(const model::Goal& goal) {
-  return {goal.pressure_rest || goal.actuation_drop, goal.actuated()};
-}
-
 SlicePlan plan_for(const model::Scene& scene, std::size_t segment, SegmentForecast& forecast,
                    double accuracy) {
-  const model::Goal goal = scene.goal.of(segment);
-  const CountedStates states = counted_states(goal);
-  forecast.want(states.rest, states.actuated);
+  const model::Wanted& goal = scene.goal.of(segment);
+  forecast.want(goal.at_rest(), goal.actuated());
   SlicePlan plan;
   plan.cuts = forecast.cuts();
   const bool contact = plan.cuts.empty() && !forecast.open_everywhere();
@@ -177,16 +172,15 @@ void plan_quickly(std::span<const SegmentTask> tasks, std::span<const std::size_
   contested.clear();
   const auto choose = [&](std::size_t t, const QuickSegment<Number>& forecast, bool known, SlicePlan& plan) {
     const model::Scene& scene = *tasks[t].scene;
-    const model::Goal goal = scene.goal.of(tasks[t].segment);
-    if (!choose_model(scene, goal, accuracy_of_slices(goal), forecast, true, known, plan)) return false;
+    const model::Wanted& goal = scene.goal.of(tasks[t].segment);
+    const double accuracy = accuracy_of_slices(scene.goal);
+    if (!choose_model(scene, goal, accuracy, forecast, true, known, plan)) return false;
     plan.cost = cost_of_quick_forecast + plan_cost(scene, tasks[t].segment, plan);
     return true;
   };
-  const auto counted = [&](std::size_t t) {
-    return counted_states(tasks[t].scene->goal.of(tasks[t].segment));
-  };
+  const auto wanted = [&](std::size_t t) { return tasks[t].scene->goal.of(tasks[t].segment); };
   forecast_quickly<Number>(
-      tasks, chosen, Look::once, counted,
+      tasks, chosen, Look::once, wanted,
       [&](std::size_t t, const QuickSegment<Number>& forecast) {
         SlicePlan& plan = plans[t];
         plan.cuts.clear();
@@ -200,7 +194,7 @@ void plan_quickly(std::span<const SegmentTask> tasks, std::span<const std::size_
   for (const std::size_t t : contested) plans[t].cost += cost_of_second_look;
   // Slices remain where one of the heights is not sure.
   forecast_quickly<Number>(
-      tasks, contested, Look::twice, counted,
+      tasks, contested, Look::twice, wanted,
       [&](std::size_t t, const QuickSegment<Number>& forecast) {
         SlicePlan simpler = plans[t];
         if (!choose(t, forecast, true, simpler)) return false;

@@ -63,7 +63,7 @@ void SliceModel::foresee() {
     return true;
   };
   forecast_quickly<double>(
-      tasks_, all, Look::once, [](std::size_t) { return CountedStates{}; },
+      tasks_, all, Look::once, [](std::size_t) { return model::Wanted{}; },
       [&](std::size_t t, const auto& forecast) { return tell(t, forecast, true); }, doubtful);
   std::vector<physics::SegmentForecast> forecasts;
   for (const std::size_t t : doubtful) forecasts.emplace_back(*tasks_[t].scene, tasks_[t].segment);

@@ -49,6 +49,8 @@ struct AxisymChoice {
 struct Wanted {
   bool pressure_rest = true, pressure_actuated = true, actuation_drop = false, volume_change = false;
 
+  // Which states they need.
+  bool at_rest() const { return pressure_rest || actuation_drop; }
   bool actuated() const { return pressure_actuated || actuation_drop || volume_change; }
   bool any() const { return pressure_rest || actuated(); }
 };
@@ -59,10 +61,7 @@ struct Goal : Wanted {
   Fidelity up_to = Fidelity::axisym;    // the finest model that may be taken
   std::vector<Wanted> of_segment = {};  // where segments differ: of each; empty: all want the same
 
-  Goal of(std::size_t segment) const {
-    return {
-        of_segment.empty() ? static_cast<const Wanted&>(*this) : of_segment[segment], accuracy, up_to, {}};
-  }
+  const Wanted& of(std::size_t segment) const { return of_segment.empty() ? *this : of_segment[segment]; }
 };
 
 // Everything a solve needs: leg, bandage, loads (the modules' voltages) and how to solve.

@@ -28,18 +28,14 @@ struct QuickSegment {
   double volume_factor() const { return pack.volume_factor[place]; }
 };
 
-// States whose errors count; one without voltage is the state at rest.
-struct CountedStates {
-  bool rest = true, actuated = true;
-};
-
 enum class Look { once, twice };  // at mid-height, or also at two heights
 
-// Quick forecasts of the `chosen` tasks, whose counted(task) states say the errors; those that are sure are
-// told(task, QuickSegment). Tasks of which they are not, or told() is false, are added to `doubtful`.
-template <typename Number, typename Counted, typename Told>
+// Quick forecasts of the `chosen` tasks, of which wanted(task) outputs say what errors count; those that are
+// sure are told(task, QuickSegment). Tasks of which they are not, or told() is false, are added to
+// `doubtful`.
+template <typename Number, typename Wanted, typename Told>
 void forecast_quickly(std::span<const SegmentTask> tasks, std::span<const std::size_t> chosen, Look look,
-                      Counted&& counted, Told&& told, std::vector<std::size_t>& doubtful) {
+                      Wanted&& wanted, Told&& told, std::vector<std::size_t>& doubtful) {
   // Large, so that it is kept for the next batch.
   thread_local physics::ForecastInput<Number> input;
   thread_local physics::QuickForecast<Number> quick;
@@ -51,10 +47,10 @@ void forecast_quickly(std::span<const SegmentTask> tasks, std::span<const std::s
     input.start(*tasks[some[0]].scene);
     for (int place = 0; place < count; ++place) {
       const auto& [scene, segment, plan] = tasks[some[place]];
-      const CountedStates states = counted(some[place]);
+      const model::Wanted outputs = wanted(some[place]);
       input.set(place, *scene, segment);
-      actuated[place] = states.actuated && scene->bandage.modules[segment].voltage != 0 ? 1 : 0;
-      rest[place] = states.rest || actuated[place] == 0 ? 1 : 0;
+      actuated[place] = outputs.actuated() && scene->bandage.modules[segment].voltage != 0 ? 1 : 0;
+      rest[place] = outputs.at_rest() || actuated[place] == 0 ? 1 : 0;
     }
     input.close(count);
     quick.analyse(input, rest, actuated);
