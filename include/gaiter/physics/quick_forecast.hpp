@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-2-Clause
 #pragma once
 
-#include "gaiter/physics/forecast_kernel.hpp"
+#include "gaiter/physics/forecast_laws.hpp"
 
 namespace gaiter::physics {
 
@@ -44,5 +44,27 @@ class QuickForecast {
   LegPoles<Number> poles_;
   ForecastErrors<Number> errors_;
 };
+
+template <typename Number>
+double QuickForecast<Number>::height_error(int place, int points) const {
+  const int known = points < forecast_points ? points : forecast_points;
+  const double of_bandage =
+      forecast::caution * (errors_.height[known][place] + errors_.height[known + 1][place]) * share_[place];
+  double of_leg[2] = {poles_.part[0][place], poles_.part[1][place]};
+  for (int n = 0; n < points; ++n)
+    for (int k = 0; k < 2; ++k) of_leg[k] *= poles_.fall[k][place];
+  return tapers_[place] * (of_bandage + of_leg[0] + of_leg[1]);
+}
+
+template <typename Number>
+double QuickForecast<Number>::wall_error(int place, int points) const {
+  const int known = points < forecast_points ? points : forecast_points;
+  const Number before = errors_.wall[known - 1][place], here = errors_.wall[known][place],
+               after = errors_.wall[known + 1][place];
+  // A term that is small by chance is not trusted.
+  const Number neighbours = Number(0.04f) * before * after;
+  const Number trusted = here * here < neighbours ? std::sqrt(neighbours) : here;
+  return forecast::caution_of_wall * share_[place] * (trusted + after);
+}
 
 }  // namespace gaiter::physics
