@@ -42,8 +42,12 @@ constexpr double share_of_newton = 0.05, newton_leaves_at_most = 0.01;
 constexpr double least_in_single = 1e-4;  // accuracy for which quick forecasts in single precision do
 constexpr double share_of_slices = 0.3;   // of the goal, for slices that finer models' errors are added to
 
-// Measured as those of plan_cost [s].
-constexpr double cost_of_quick_forecast = 0.13e-6, cost_of_second_look = 0.12e-6, cost_of_forecast = 0.5e-6;
+// Measured as those of plan_cost [s]; of quick forecasts in single and in double precision.
+template <typename Number>
+constexpr double cost_of_quick_forecast = sizeof(Number) == sizeof(float) ? 0.094e-6 : 0.154e-6;
+template <typename Number>
+constexpr double cost_of_second_look = sizeof(Number) == sizeof(float) ? 0.18e-6 : 0.3e-6;
+constexpr double cost_of_forecast = 0.9e-6;
 
 // Errors of the wanted outputs over those of the pressure.
 template <typename Forecast>
@@ -135,7 +139,7 @@ SlicePlan plan_for(const model::Scene& scene, std::size_t segment, SegmentForeca
   plan.cuts = forecast.cuts();
   const bool contact = plan.cuts.empty() && !forecast.open_everywhere();
   choose_model(scene, goal, accuracy, forecast, contact, false, plan);
-  plan.cost = cost_of_quick_forecast + cost_of_forecast + plan_cost(scene, segment, plan);
+  plan.cost = cost_of_forecast + plan_cost(scene, segment, plan);
   return plan;
 }
 
@@ -175,7 +179,7 @@ void plan_quickly(std::span<const SegmentTask> tasks, std::span<const std::size_
     const model::Wanted& goal = scene.goal.of(tasks[t].segment);
     const double accuracy = accuracy_of_slices(scene.goal);
     if (!choose_model(scene, goal, accuracy, forecast, true, known, plan)) return false;
-    plan.cost = cost_of_quick_forecast + plan_cost(scene, tasks[t].segment, plan);
+    plan.cost += plan_cost(scene, tasks[t].segment, plan);
     return true;
   };
   const auto wanted = [&](std::size_t t) { return tasks[t].scene->goal.of(tasks[t].segment); };
@@ -184,6 +188,7 @@ void plan_quickly(std::span<const SegmentTask> tasks, std::span<const std::size_
       [&](std::size_t t, const QuickSegment<Number>& forecast) {
         SlicePlan& plan = plans[t];
         plan.cuts.clear();
+        plan.cost = cost_of_quick_forecast<Number>;
         if (!choose(t, forecast, false, plan)) return false;
         if (plan.fidelity == Fidelity::slice && forecast.first_order_at_middle() < may_suffice * plan.asked)
           contested.push_back(t);
@@ -191,18 +196,23 @@ void plan_quickly(std::span<const SegmentTask> tasks, std::span<const std::size_
       },
       doubtful);
   if (contested.empty()) return;
-  for (const std::size_t t : contested) plans[t].cost += cost_of_second_look;
+  for (const std::size_t t : contested) plans[t].cost += cost_of_second_look<Number>;
   // Slices remain where one of the heights is not sure.
   forecast_quickly<Number>(
       tasks, contested, Look::twice, wanted,
       [&](std::size_t t, const QuickSegment<Number>& forecast) {
-        SlicePlan simpler = plans[t];
-        if (!choose(t, forecast, true, simpler)) return false;
-        simpler.cost += cost_of_second_look;
-        plans[t] = simpler;
+        SlicePlan again = plans[t];
+        again.cost = cost_of_quick_forecast<Number> + cost_of_second_look<Number>;
+        if (!choose(t, forecast, true, again)) return false;
+        plans[t] = again;
         return true;
       },
       unsure);
+}
+
+double spent_on_quick_forecast(const model::Goal& goal) {
+  if (goal.up_to != Fidelity::slice) return 0;
+  return goal.accuracy < least_in_single ? cost_of_quick_forecast<double> : cost_of_quick_forecast<float>;
 }
 
 }  // namespace
@@ -224,8 +234,9 @@ void plan_segments(std::span<const SegmentTask> tasks, std::vector<SlicePlan>& p
   SegmentForecast::analyse(forecasts);
   for (std::size_t k = 0; k < doubtful.size(); ++k) {
     const SegmentTask& task = tasks[doubtful[k]];
-    plans[doubtful[k]] =
-        plan_for(*task.scene, task.segment, forecasts[k], accuracy_of_slices(task.scene->goal));
+    const double accuracy = accuracy_of_slices(task.scene->goal);
+    plans[doubtful[k]] = plan_for(*task.scene, task.segment, forecasts[k], accuracy);
+    plans[doubtful[k]].cost += spent_on_quick_forecast(task.scene->goal);
   }
 }
 
