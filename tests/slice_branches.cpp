@@ -272,4 +272,35 @@ TEST(FloatingStrain, IsWhereFieldAndBandageBalance) {
   }
 }
 
+// Of many slices at once, from far below the voltage at which the bandage expands without end to beyond it.
+TEST(FloatingStrain, OfAPackIsThatOfTheSearch) {
+  std::vector<model::Scene> scenes;
+  std::vector<double> starts;
+  for (const bool stiff : {false, true})
+    for (int k = 0; k < 32; ++k) {
+      const double stretch = k % 2 == 0 ? 1.1 : 1.8;
+      const model::Scene scene = stiff ? cylinder(stretch, {{21.193e3, 3.507}, {10.514, 12.147}})
+                                       : cylinder(stretch, {{20e3, 2}, {10, 2.5}});
+      const Slice slice = reference::slice_of(scene, 0, 0.5);
+      starts.push_back(static_cast<double>(1 - reference::leg_at<Real>(slice, 0).radius / slice.leg_radius));
+      scenes.push_back(with_voltage(scene, (1 + std::pow(10, -12 + 0.4 * k)) * lift_off_voltage(scene)));
+    }
+  const auto system = samples::system_of(scenes, 8);
+  ASSERT_EQ(starts.size(), static_cast<std::size_t>(physics::pack_width));
+  physics::Pack start, strain, found;
+  for (int i = 0; i < physics::pack_width; ++i) start[i] = starts[i];
+  physics::floating_strains(system.shape(), system.pack(0), start, strain, found);
+  int together = 0, alone = 0;
+  for (int i = 0; i < physics::pack_width; ++i) {
+    const auto expected = physics::floating_strain(system, i, starts[i]);
+    alone += expected.has_value();
+    if (!(found[i] > 0)) continue;
+    ++together;
+    ASSERT_TRUE(expected.has_value()) << i;
+    EXPECT_NEAR(strain[i], *expected, 1e-14) << i;
+  }
+  EXPECT_GT(together, 0.8 * alone) << alone;
+  EXPECT_LT(alone, physics::pack_width);
+}
+
 }  // namespace

@@ -13,6 +13,17 @@ constexpr int deepest = 9;  // 63^-9 of a path: nothing finer can be told apart
 constexpr double rounding = 2.2e-16;
 constexpr double largest_rise = 4;  // of a hump between two points over that of a tangent, with caution
 
+// Of a bandage that floats free, in the logarithm of its radius: a first step along its path, twice as large
+// each time.
+constexpr double first_stride = 0.03;
+constexpr int strides = 6, most_newton_steps = 40;
+
+bool any(const Pack& flags) {
+  int found = 0;
+  for (int i = 0; i < pack_width; ++i) found |= flags[i] > 0;
+  return found != 0;
+}
+
 void spread(double from, double to, Pack& points) {
   for (int i = 0; i < pack_width; ++i) points[i] = from + (to - from) * i / (pack_width - 1);
   points[pack_width - 1] = to;
@@ -63,16 +74,19 @@ double section(const Balance& balance, Interval interval) {
     int i = 1;
     while (i < pack_width - 1 && value[i] < 0) ++i;
     interval = {points[i - 1], points[i]};
-    if (!(interval.to - interval.from > rounding * std::fabs(interval.to))) break;
+    const double smallest = rounding * std::fabs(interval.to);
+    if (!(interval.to - interval.from > smallest)) break;
+    // The other end may stay where it is.
+    if (slope[i - 1] > 0 && -value[i - 1] <= smallest * slope[i - 1]) return interval.from;
     crowd(interval.from, interval.to, value[i - 1], slope[i - 1], points);
   }
   return interval.to;
 }
 
-// Strain of a leg whose radius has grown by the factor exp(expansion) from `start` on.
+// Strains of legs whose radii have grown by the factor exp(expansion) from `start` on.
 GAITER_MULTIVERSION
-void expand(double start, const Pack& expansion, Pack& strain) {
-  for (int i = 0; i < pack_width; ++i) strain[i] = start - (1 - start) * expm1(expansion[i]);
+void expand(const Pack& start, const Pack& expansion, Pack& strain) {
+  for (int i = 0; i < pack_width; ++i) strain[i] = start[i] - (1 - start[i]) * expm1(expansion[i]);
 }
 
 }  // namespace
@@ -98,12 +112,55 @@ std::optional<Interval> contact_interval(const SliceSystem& system, std::size_t 
   return Interval{highest * std::pow(found->from, 3), highest * std::pow(found->to, 3)};
 }
 
+void floating_strains(const SliceShape& shape, const Pack* rows, const Pack& start, Pack& strain,
+                      Pack& found) {
+  Pack low{}, high{}, place{}, value, slope, open;  // logarithms of the radius over where it starts
+  for (int i = 0; i < pack_width; ++i) open[i] = 1;
+  found = {};
+  const auto balance = [&] {
+    expand(start, place, strain);
+    bandage_pressure(shape, rows, strain, value, slope);
+    for (int i = 0; i < pack_width; ++i) slope[i] *= strain[i] - 1;
+  };
+  double stride = first_stride;
+  for (int step = 0; step < strides && any(open); ++step, stride *= 2) {
+    balance();
+    for (int i = 0; i < pack_width; ++i) {
+      const bool rises = open[i] > 0 && slope[i] > 0, crossed = rises && value[i] >= 0;
+      found[i] = crossed ? 1 : found[i];
+      high[i] = crossed ? place[i] : high[i];
+      open[i] = rises && value[i] < 0 ? 1 : 0;
+      low[i] = open[i] > 0 ? place[i] : low[i];
+      place[i] += open[i] * stride;
+    }
+  }
+  // Newton's method inside the bracket.
+  place = high;
+  open = found;
+  for (int step = 0; step < most_newton_steps && any(open); ++step) {
+    balance();
+    for (int i = 0; i < pack_width; ++i) {
+      const bool waits = open[i] > 0, above = value[i] >= 0;
+      low[i] = waits && !above ? place[i] : low[i];
+      high[i] = waits && above ? place[i] : high[i];
+      const double newton = place[i] - value[i] / slope[i];
+      const double next = newton > low[i] && newton < high[i] ? newton : 0.5 * (low[i] + high[i]);
+      open[i] = waits && std::fabs(next - place[i]) > rounding ? 1 : 0;
+      place[i] = waits ? next : place[i];
+    }
+  }
+  for (int i = 0; i < pack_width; ++i) found[i] *= 1 - open[i];
+  expand(start, place, strain);
+}
+
 std::optional<double> floating_strain(const SliceSystem& system, std::size_t slice, double start) {
   constexpr double largest_expansion = 9;  // logarithm of the radius over where it starts
   const SliceSystem copies = system.replicate(slice);
+  Pack starts;
+  for (int i = 0; i < pack_width; ++i) starts[i] = start;
   const auto balance = [&](const Pack& expansion, Pack& value, Pack& slope) {
     Pack strain;
-    expand(start, expansion, strain);
+    expand(starts, expansion, strain);
     bandage_pressure(copies.shape(), copies.pack(0), strain, value, slope);
     for (int i = 0; i < pack_width; ++i) slope[i] *= strain[i] - 1;
   };

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <span>
 
 #include "gaiter/petsc/session.hpp"
 #include "gaiter/physics/branch.hpp"
@@ -122,26 +124,51 @@ void SliceModel::record_actuated(const Block& block, std::size_t k) {
                            outcomes_[k]);
 }
 
-// Slices of a pack that do not touch the leg under voltage: the bandage's own equilibrium, if it has one.
-void SliceModel::float_free(const Block& block, std::size_t pack) {
-  SliceOutcomes& outcomes = outcomes_[pack];
-  for (int i = 0; i < block.segments.count; ++i) {
-    if (outcomes.pressure_actuated[i] != 0 || block.segments.constants.voltage[i] == 0 ||
-        outcomes.status_of(i) >= Status::no_equilibrium)
-      continue;
-    const double start = 1 - outcomes.bandage_radius_actuated[i] / outcomes.leg_radius[i];
-    const auto strain = physics::floating_strain(system_, pack * pack_width + i, start);
-    const Status floating = outcomes.pressure_rest[i] > 0 ? Status::lifted : Status::slack;
-    const Status found = strain ? floating : Status::pulled_in;
-    outcomes.status[i] = static_cast<double>(std::max(outcomes.status_of(i), found));
-    if (strain) outcomes.bandage_radius_actuated[i] = outcomes.leg_radius[i] * (1 - *strain);
+// Slices that do not touch the leg under voltage: the bandage's own equilibrium, if it has one.
+void SliceModel::float_free() {
+  floating_.clear();
+  each_pack([&](const Block& block, std::size_t k) {
+    const SliceOutcomes& outcomes = outcomes_[k];
+    for (int i = 0; i < block.segments.count; ++i)
+      if (outcomes.pressure_actuated[i] == 0 && block.segments.constants.voltage[i] != 0 &&
+          outcomes.status_of(i) < Status::no_equilibrium)
+        floating_.push_back({k, i, block.segments.constants.stiffens[i] > 0});
+  });
+  for (std::size_t first = 0; first < floating_.size(); first += pack_width) {
+    const std::size_t count = std::min<std::size_t>(pack_width, floating_.size() - first);
+    float_free(std::span(floating_).subspan(first, count));
+  }
+}
+
+void SliceModel::float_free(std::span<const FloatingSlice> slices) {
+  std::array<std::size_t, pack_width> places;
+  Pack start, strain, found;
+  for (int i = 0; i < pack_width; ++i) {
+    const auto& [pack, place, stiffens] = slices[std::min<std::size_t>(i, slices.size() - 1)];
+    places[i] = pack * pack_width + place;
+    start[i] = 1 - outcomes_[pack].bandage_radius_actuated[place] / outcomes_[pack].leg_radius[place];
+  }
+  gathered_.resize(system_.rows_per_pack());
+  system_.gather(places, gathered_.data());
+  SliceShape shape = system_.shape();
+  shape.single = false;
+  physics::floating_strains(shape, gathered_.data(), start, strain, found);
+  for (int i = 0; i < static_cast<int>(slices.size()); ++i) {
+    const auto& [pack, place, stiffens] = slices[i];
+    const auto own = stiffens && found[i] > 0 ? std::optional(strain[i])
+                                              : physics::floating_strain(system_, places[i], start[i]);
+    SliceOutcomes& outcomes = outcomes_[pack];
+    const Status floating = outcomes.pressure_rest[place] > 0 ? Status::lifted : Status::slack;
+    const Status status = own ? floating : Status::pulled_in;
+    outcomes.status[place] = static_cast<double>(std::max(outcomes.status_of(place), status));
+    if (own) outcomes.bandage_radius_actuated[place] = outcomes.leg_radius[place] * (1 - *own);
   }
 }
 
 // What needs the actuated radius of the bandage: lift-off, actuation pressure, field.
 void SliceModel::finish_actuated(model::Fidelity fidelity) {
+  float_free();
   each_pack([&](const Block& block, std::size_t k) {
-    float_free(block, k);
     physics::record_loads(system_.shape(), system_.pack(k), block.segments.constants.voltage, outcomes_[k]);
   });
   if (fidelity == model::Fidelity::slice) small_drops();

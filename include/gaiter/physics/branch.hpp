@@ -27,4 +27,9 @@ std::optional<Interval> contact_interval(const SliceSystem& system, std::size_t 
 // in).
 std::optional<double> floating_strain(const SliceSystem& system, std::size_t slice, double start);
 
+// The same of a pack of slices whose bandages stiffen: where these rise to their equilibrium and pass it but
+// once it is found in a few steps, else `found` is 0 and floating_strain() has to look.
+void floating_strains(const SliceShape& shape, const Pack* rows, const Pack& start, Pack& strain,
+                      Pack& found);
+
 }  // namespace gaiter::physics

@@ -78,6 +78,12 @@ class SliceModel {
     double model_error = 0;   // of the rigid leg, or of the first order, against slices
   };
 
+  struct FloatingSlice {
+    std::size_t pack;
+    int place;
+    bool stiffens;  // its bandage, the further it is stretched
+  };
+
   // Up to 64 segments with equally many slices. The first slices of all are a pack, and so on.
   struct Block {
     std::size_t first_pack = 0;
@@ -105,7 +111,8 @@ class SliceModel {
   void solve_doubtful(bool at_rest);
   void record_rest(const Block& block, std::size_t pack);
   void record_actuated(const Block& block, std::size_t pack);
-  void float_free(const Block& block, std::size_t pack);
+  void float_free();
+  void float_free(std::span<const FloatingSlice> slices);
   void finish_actuated(model::Fidelity fidelity);
   void small_drops();
   void small_drops(const physics::Quadrature& gauss, std::span<const std::size_t> slices);
@@ -141,8 +148,9 @@ class SliceModel {
   std::vector<physics::PackState> states_;
   std::vector<physics::SliceOutcomes> outcomes_;
   std::vector<physics::Pack> rigid_pressure_, rest_pressure_;
-  std::vector<physics::Pack> radii_;                     // of the leg at each slice
-  std::vector<physics::Pack> gathered_;                  // constants of slices from several packs
+  std::vector<physics::Pack> radii_;     // of the leg at each slice
+  std::vector<physics::Pack> gathered_;  // constants of slices from several packs
+  std::vector<FloatingSlice> floating_;
   std::array<std::vector<std::size_t>, 3> small_drops_;  // slices, by how many points they need
   std::vector<int> places_;                              // in use in each pack
   std::vector<double> height_error_;                     // of each task
