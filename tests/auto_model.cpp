@@ -277,21 +277,46 @@ TEST(Auto, GoesByTheWantedOutput) {
 
 // The drop is a small part of the pressures, and its relative error so much larger.
 TEST(Auto, TellsTheErrorOfTheWantedOutput) {
-  for (const double accuracy : {0.1, 1e-2, 1e-3, 1e-4}) {
-    model::Scene scene = paper::scene(2.2, 3e3);
-    scene.goal.up_to = Fidelity::slice;
-    scene.goal.accuracy = accuracy;
-    scene.goal.actuation_drop = true;
-    scene.goal.pressure_rest = scene.goal.pressure_actuated = false;
-    for (std::size_t segment = 0; segment < 6; ++segment) {
-      const SegmentTask task{&scene, segment};
-      solvers::AutoModel model(PETSC_COMM_SELF);
-      const model::SegmentResult found = model.solve({&task, 1})[0];
-      const double truth = resolved(scene, segment).actuation_drop;
-      const double error = std::fabs(found.actuation_drop / truth - 1);
-      const double told = found.discretisation_error + model.plans()[0].expected_model_error();
-      EXPECT_LE(error, told) << accuracy << ", segment " << segment;
-      EXPECT_LE(told, 1.01 * accuracy) << accuracy << ", segment " << segment;
+  for (const bool volume : {false, true})
+    for (const double accuracy : {0.1, 1e-2, 1e-3, 1e-4}) {
+      model::Scene scene = paper::scene(2.2, 3e3);
+      scene.goal.up_to = Fidelity::slice;
+      scene.goal.accuracy = accuracy;
+      (volume ? scene.goal.volume_change : scene.goal.actuation_drop) = true;
+      scene.goal.pressure_rest = scene.goal.pressure_actuated = false;
+      for (std::size_t segment = 0; segment < 6; ++segment) {
+        const SegmentTask task{&scene, segment};
+        solvers::AutoModel model(PETSC_COMM_SELF);
+        const model::SegmentResult found = model.solve({&task, 1})[0];
+        const auto truth = resolved(scene, segment);
+        const double error = std::fabs(volume ? found.volume_change / truth.volume_change - 1
+                                              : found.actuation_drop / truth.actuation_drop - 1);
+        const double told = found.discretisation_error + model.plans()[0].expected_model_error();
+        EXPECT_LE(error, told) << accuracy << ", segment " << segment << ", volume " << volume;
+        EXPECT_GE(found.error_estimate, model::rounded_up(0.99 * told));
+        EXPECT_LE(told, 1.01 * accuracy) << accuracy << ", segment " << segment;
+      }
+    }
+}
+
+// Over the height the leg's strain changes more than the pressure, so that few slices err more in the volume;
+// at times by chance hardly at all.
+TEST(Forecast, OfTheVolumeOverTheHeight) {
+  for (const double stretch : {1.2, 1.5, 1.8}) {
+    const model::Scene scene = paper::scene(stretch, 4e3);
+    for (std::size_t segment = 0; segment < 3; ++segment) {
+      const model::Segment& part = scene.leg.segments[segment];
+      const double taper = 0.5 * (part.upper_radius - part.lower_radius) / part.mean_radius();
+      const auto truth = resolved(scene, segment);
+      physics::SegmentForecast forecast(scene, segment);
+      forecast.analyse();
+      for (int slices = 1; slices <= 3; ++slices) {
+        const auto found = by_plan(scene, segment, {.slice_count = slices, .wall_points = 16});
+        const double error = std::fabs(found.volume_change / truth.volume_change - 1);
+        const double told = physics::volume_height_error(scene.leg, part, forecast.loaded(), taper, slices);
+        EXPECT_GT(told, error) << stretch << ", segment " << segment << ", " << slices;
+        EXPECT_LT(told, 300 * error + 1e-12) << stretch << ", segment " << segment << ", " << slices;
+      }
     }
   }
 }

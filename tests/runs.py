@@ -31,7 +31,7 @@ class Run:
         # mpiexec's own remark on an exit code that is not 0 is left out by -q.
         launch = [MPIEXEC, "-q", "-n", str(ranks)] if ranks else []
         done = subprocess.run([*launch, GAITER, *map(str, words)], cwd=folder, capture_output=True, text=True,
-                              timeout=120, check=False, stdin=subprocess.DEVNULL)
+                              timeout=300, check=False, stdin=subprocess.DEVNULL)
         self.words, self.code, self.out = " ".join(map(str, words)), done.returncode, done.stdout
         self.err = own_lines(done.stderr)
 

@@ -8,7 +8,8 @@ namespace gaiter::physics {
 
 namespace {
 
-constexpr int coefficients = 3;  // the last ones tell
+constexpr double volume_caution = 2;  // of an estimate of the leading order
+constexpr int coefficients = 3;       // the last ones tell
 
 #define GAITER_EACH for (int i = 0; i < pack_width; ++i)
 
@@ -34,26 +35,28 @@ inline double larger(double a, double b) {
 
 GAITER_MULTIVERSION
 void height_error(const Quadrature& gauss, std::span<const SliceOutcomes> slices,
-                  Pack SliceOutcomes::*pressure, const Pack& roughness, Pack& error, Pack& mean) {
+                  Pack SliceOutcomes::*quantity, const Pack& roughness, Pack& error, Pack& mean) {
   constexpr double caution = 2, smooth = 0.3, rounding = 1e-15;
   const int count = static_cast<int>(gauss.nodes.size()), degree = count - 1;
   Pack last[coefficients]{}, log_fall, size, rate;
   GAITER_EACH mean[i] = 0;
   for (int k = 0; k < count; ++k) {
     const auto polynomials = last_legendre(count, 2 * gauss.nodes[k] - 1);
-    const Pack& here = slices[k].*pressure;
+    const Pack& here = slices[k].*quantity;
     GAITER_EACH {
       const double share = gauss.weights[k] * here[i];
       mean[i] += share;
       for (int place = 0; place < coefficients; ++place) last[place][i] += polynomials[place] * share;
     }
   }
+  Pack level;
+  GAITER_EACH level[i] = std::fabs(mean[i]);
   // Upper bound where the pressure is smooth: the slowest fall that any of them shows.
   GAITER_EACH log_fall[i] = -std::numeric_limits<double>::infinity();
   for (int place = 0; place < coefficients; ++place) {
     const double power = count - coefficients + place;
     GAITER_EACH {
-      const double relative = mean[i] > 0 ? std::fabs(last[place][i]) / mean[i] : 0;
+      const double relative = level[i] > 0 ? std::fabs(last[place][i]) / level[i] : 0;
       const double here = log(relative) / power;
       log_fall[i] = here > log_fall[i] ? here : log_fall[i];
     }
@@ -62,7 +65,7 @@ void height_error(const Quadrature& gauss, std::span<const SliceOutcomes> slices
   // least half of what its two forerunners would have it.
   const double falling = (2.0 * degree - 3) / (2.0 * degree - 1);
   GAITER_EACH {
-    const double floor = rounding * mean[i];
+    const double floor = rounding * level[i];
     const double before = larger(std::fabs(last[0][i]), floor), middle = larger(std::fabs(last[1][i]), floor),
                  end = larger(std::fabs(last[2][i]), floor);
     const double expected = middle < before ? falling * middle * middle / before : falling * middle;
@@ -78,9 +81,29 @@ void height_error(const Quadrature& gauss, std::span<const SliceOutcomes> slices
     const double bound = std::fabs(roughness[i]) < smooth && carried < 1 ? carried : 1;
     // The rule gives at most half for the mean of the Legendre polynomial of degree 2n, which is 0.
     const double tail = 0.5 * caution * size[i];
-    const double found = tail < bound * mean[i] ? tail : bound * mean[i];
-    error[i] = mean[i] > 0 ? found : 0;
+    const double found = tail < bound * level[i] ? tail : bound * level[i];
+    error[i] = level[i] > 0 ? found : 0;
   }
+}
+
+double volume_height_error(const model::Leg& leg, const model::Segment& segment, const LoadedLeg& loaded,
+                           double taper, int points) {
+  if (taper == 0 || loaded.strain == 0) return 0;
+  const double span = 2 * std::fabs(taper), constant = volume_caution * gauss_error_constant(points);
+  // With the square of the radius; no factor of the derivative is trusted to be small.
+  const double power = std::fabs(loaded.response * loaded.give / loaded.strain) + 2;
+  double error = constant;
+  for (int j = 0; j < 2 * points; ++j) error *= span * std::fmax(std::fabs(power - j), 0.5);
+  if (leg.material != model::LegMaterial::compliance) return error;
+  const model::Compliance& law = segment.compliance;
+  const double decaying = leg.variant == model::ComplianceVariant::anchored ? -law.a : law.c;
+  // The pressure is no straight line over the height either, nor is the square of the radius.
+  const double bent = std::fabs(loaded.give / loaded.pressure) + 2;
+  const auto of_exponential = [&](double size, double rate) {
+    const double part = std::fabs(size * std::exp(rate * loaded.pressure) / loaded.strain);
+    return constant * part * std::pow((std::fabs(rate * loaded.give) + bent) * span, 2 * points);
+  };
+  return error + of_exponential(law.a, law.b) + of_exponential(decaying, law.d);
 }
 
 }  // namespace gaiter::physics

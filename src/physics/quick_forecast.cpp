@@ -39,7 +39,10 @@ GAITER_INLINE void tell(const ForecastInput<Number>& input, const State<Number>&
     const Number down = 1 / up[i], over = 1 / x[i];
     const Number spread = 0.5f * (up[i] - down) * over;
     const Number spread_of_cube = (up[i] * up[i] * up[i] - down * down * down) * over * Number(1.0 / 6);
-    const Number typical = Number(0.3) * log_fall[i] * log_fall[i];
+    const Number own_share = counts[i] / (s.pressure[i] * (1 + s.gain[i]));
+    // The error may be small by chance in the middle, and is not at the ends.
+    const Number at_ends = input.taper[i] * s.response[i] * s.slope[i] * s.slope[i] * own_share;
+    const Number typical = Number(0.3) * log_fall[i] * log_fall[i] + Number(0.1) * at_ends * at_ends;
     const Number missed = caution * std::fabs(s.first[i] / s.pressure[i] - 1);
     const Number yields = counts[i] * input.gives_way[i], size = std::fabs(s.strain[i]);
     const Number of_middle = caution_of_mean(x[i]) * std::fabs(fall[i] - 1);
@@ -50,7 +53,7 @@ GAITER_INLINE void tell(const ForecastInput<Number>& input, const State<Number>&
     found.first_order[i] = larger(found.first_order[i], first_error);
     found.first_order_at_middle[i] = larger(found.first_order_at_middle[i], yields * missed / caution);
     found.volume_factor[i] = larger(found.volume_factor[i], volume);
-    share[i] = larger(share[i], counts[i] / (s.pressure[i] * (1 + s.gain[i])));
+    share[i] = larger(share[i], own_share);
   }
   for (int k = 0; k < 2; ++k) GAITER_EACH {
       poles.part[k][i] = larger(poles.part[k][i], counts[i] * own.part[k][i]);
@@ -115,8 +118,13 @@ GAITER_INLINE void QuickForecast<Number>::work_out(const Input& input, const Pac
       drop_factor[i] = rest.pressure[i] / safe;
     }
   }
+  const State<Number>& loaded = voltage ? actuated : rest;
+  loaded_pressure_ = loaded.pressure;
+  loaded_strain_ = loaded.strain;
+  loaded_response_ = loaded.response;
   GAITER_EACH {
-    tapers_[i] = input.taper[i] != 0 ? 1 : 0;
+    taper_[i] = std::fabs(input.taper[i]);
+    loaded_give_[i] = loaded.slope[i] / (1 + loaded.gain[i]);
     const Number sum = compliance[i] + first_order[i] + volume_factor[i] + share_[i] + errors_.height[1][i] +
                        errors_.height[2][i] + errors_.wall[0][i] + errors_.wall[1][i] + errors_.wall[2][i] +
                        poles_.part[0][i] + poles_.part[1][i];

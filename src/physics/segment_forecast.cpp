@@ -138,9 +138,10 @@ double SegmentForecast::compliance_error() const {
 double SegmentForecast::first_order_error() const {
   return worst([&](const State& s) {
     if (!(s.rigid > 0)) return 0.0;
-    // It may be small by chance in the middle.
+    // It may be small by chance in the middle, and is not at the ends.
     const double fall = std::log(s.rigid / s.pressure);
-    const double typical = 0.3 * fall * fall;
+    const double at_ends = taper_ * s.response * s.slope * s.slope / (s.pressure * (1 + s.gain));
+    const double typical = 0.3 * fall * fall + 0.1 * at_ends * at_ends;
     return spread(s, 3) * std::max(caution * std::fabs(s.first / s.pressure - 1), typical);
   });
 }
@@ -168,6 +169,11 @@ double SegmentForecast::height_error(const State& s, int n) const {
 
 double SegmentForecast::height_error(int slices) const {
   return worst([&](const State& s) { return height_error(s, slices); });
+}
+
+LoadedLeg SegmentForecast::loaded() const {
+  const State& s = energised_ ? actuated_ : rest_;
+  return {s.pressure, s.strain, s.response, s.slope / (1 + s.gain)};
 }
 
 double SegmentForecast::wall_error(int points) const {

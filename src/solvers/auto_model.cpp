@@ -66,9 +66,15 @@ int common_count(int slices) {
   return std::min(count, most_slices);
 }
 
+double volume_error(const SegmentTask& task, const physics::LoadedLeg& loaded, int slices) {
+  const model::Segment& segment = task.scene->leg.segments[task.segment];
+  const double taper = 0.5 * (segment.upper_radius - segment.lower_radius) / segment.mean_radius();
+  return physics::volume_height_error(task.scene->leg, segment, loaded, taper, slices);
+}
+
 // False: the forecast does not reach far enough.
 template <typename Forecast>
-bool choose_points(const Forecast& forecast, SlicePlan& plan) {
+bool choose_points(const SegmentTask& task, const Forecast& forecast, SlicePlan& plan) {
   const double tolerance = plan.tolerance;
   plan.newton_leaves = std::min(share_of_newton * tolerance, newton_leaves_at_most);
   const bool cut = !plan.cuts.empty();
@@ -80,9 +86,14 @@ bool choose_points(const Forecast& forecast, SlicePlan& plan) {
   // Of a small error more terms count than the forecast has.
   const double share = tolerance > 5e-5 ? 0.9 : tolerance > 5e-6 ? 0.7 : 0.5;
   const double left = share * tolerance - plan.wall_error;
+  const auto height_error = [&](int slices) {
+    const double of_pressure = forecast.height_error(slices);
+    if (!task.scene->goal.of(task.segment).volume_change) return of_pressure;
+    return std::max(of_pressure, volume_error(task, forecast.loaded(), slices) / plan.factor);
+  };
   plan.roughness = 0;
   plan.slice_count = 1;
-  while ((plan.height_error = forecast.height_error(plan.slice_count)) > left &&
+  while ((plan.height_error = height_error(plan.slice_count)) > left &&
          plan.slice_count < Forecast::most_slices)
     plan.slice_count += 1 + plan.slice_count / most_smooth_slices;
   if (plan.slice_count == physics::fewest_for_height_error && tolerance < tolerance_of_fewest_slices)
@@ -107,8 +118,10 @@ bool choose_points(const Forecast& forecast, SlicePlan& plan) {
 // presses on the leg, and does so from end to end; `known`: the models' errors are, from two heights. False
 // as choose_points.
 template <typename Forecast>
-bool choose_model(const model::Scene& scene, const model::Wanted& goal, double accuracy,
-                  const Forecast& forecast, bool contact, bool known, SlicePlan& plan) {
+bool choose_model(const SegmentTask& task, double accuracy, const Forecast& forecast, bool contact,
+                  bool known, SlicePlan& plan) {
+  const model::Scene& scene = *task.scene;
+  const model::Wanted& goal = scene.goal.of(task.segment);
   plan.factor = worst_factor(goal, forecast);
   const double tolerance = plan.asked = accuracy / plan.factor;
   plan.actuated = goal.actuated();
@@ -128,7 +141,7 @@ bool choose_model(const model::Scene& scene, const model::Wanted& goal, double a
     }
   }
   plan.tolerance = tolerance - plan.model_error;
-  return choose_points(forecast, plan);
+  return choose_points(task, forecast, plan);
 }
 
 SlicePlan plan_for(const model::Scene& scene, std::size_t segment, SegmentForecast& forecast,
@@ -138,7 +151,7 @@ SlicePlan plan_for(const model::Scene& scene, std::size_t segment, SegmentForeca
   SlicePlan plan;
   plan.cuts = forecast.cuts();
   const bool contact = plan.cuts.empty() && !forecast.open_everywhere();
-  choose_model(scene, goal, accuracy, forecast, contact, false, plan);
+  choose_model({&scene, segment}, accuracy, forecast, contact, false, plan);
   plan.cost = cost_of_forecast + plan_cost(scene, segment, plan);
   return plan;
 }
@@ -176,9 +189,8 @@ void plan_quickly(std::span<const SegmentTask> tasks, std::span<const std::size_
   contested.clear();
   const auto choose = [&](std::size_t t, const QuickSegment<Number>& forecast, bool known, SlicePlan& plan) {
     const model::Scene& scene = *tasks[t].scene;
-    const model::Wanted& goal = scene.goal.of(tasks[t].segment);
     const double accuracy = accuracy_of_slices(scene.goal);
-    if (!choose_model(scene, goal, accuracy, forecast, true, known, plan)) return false;
+    if (!choose_model(tasks[t], accuracy, forecast, true, known, plan)) return false;
     plan.cost += plan_cost(scene, tasks[t].segment, plan);
     return true;
   };
@@ -362,7 +374,7 @@ std::span<const model::SegmentResult> AutoModel::solve(std::span<const SegmentTa
     if (plan.factor > 1 && model::trustworthy(result.status)) {
       result.discretisation_error *= plan.factor;
       result.model_error *= plan.factor;
-      model::derive_error(result);
+      model::derive_error(result, plan.expected_model_error());
     }
     if (plan.actuated) continue;
     for (double* value : {&result.pressure_actuated, &result.pressure_actuated_rigid,

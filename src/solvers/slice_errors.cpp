@@ -23,8 +23,33 @@ constexpr int most_check_points = 128;    // over the height, of the rule that a
 
 }  // namespace
 
-// From the pressures of a block alone, where these leave no doubt: of the pieces of the height, each by
-// itself.
+// Relative, of the average of a quantity over the height, of the pieces of which each tells by itself.
+void SliceModel::height_error(const Block& block, Pack SliceOutcomes::*quantity, Pack& relative) const {
+  const std::size_t count = block.rule->nodes.size();
+  const physics::SegmentConstants<Pack>& leg = block.segments.constants;
+  Pack sum{}, whole{};
+  for (int piece = 0; piece < block.pieces; ++piece) {
+    const std::size_t from = static_cast<std::size_t>(piece) * count;
+    Pack roughness, error, mean, share{};
+    for (std::size_t k = 0; k < count; ++k)
+      for (int i = 0; i < pack_width; ++i) share[i] += block.weights[from + k][i];
+    for (int i = 0; i < pack_width; ++i) {
+      const double ends = leg.upper_radius[i] + leg.lower_radius[i];
+      roughness[i] = std::fabs((leg.upper_radius[i] - leg.lower_radius[i]) / ends) * share[i];
+      const SlicePlan* plan = tasks_[block.tasks[std::min<std::size_t>(i, block.tasks.size() - 1)]].plan;
+      if (plan) roughness[i] = std::max(roughness[i], plan->roughness);
+    }
+    physics::height_error(*block.rule, std::span(outcomes_).subspan(block.first_pack + from, count), quantity,
+                          roughness, error, mean);
+    for (int i = 0; i < pack_width; ++i) {
+      sum[i] += share[i] * error[i];
+      whole[i] += share[i] * mean[i];
+    }
+  }
+  for (int i = 0; i < pack_width; ++i) relative[i] = whole[i] != 0 ? sum[i] / std::fabs(whole[i]) : 0;
+}
+
+// From the pressures of a block alone, where these leave no doubt.
 void SliceModel::height_errors(const Block& block) {
   const std::size_t count = block.rule->nodes.size();
   const auto tell = [&](auto&& error_of) {
@@ -47,32 +72,20 @@ void SliceModel::height_errors(const Block& block) {
     }
     return;
   }
-  Pack worst{};
-  for (const bool actuated : {false, true}) {
-    if (actuated && !energised_) break;
-    Pack sum{}, whole{};
-    for (int piece = 0; piece < block.pieces; ++piece) {
-      const std::size_t from = static_cast<std::size_t>(piece) * count;
-      Pack roughness, error, mean, share{};
-      for (std::size_t k = 0; k < count; ++k)
-        for (int i = 0; i < pack_width; ++i) share[i] += block.weights[from + k][i];
-      const physics::SegmentConstants<Pack>& leg = block.segments.constants;
-      for (int i = 0; i < pack_width; ++i) {
-        const double ends = leg.upper_radius[i] + leg.lower_radius[i];
-        roughness[i] = std::fabs((leg.upper_radius[i] - leg.lower_radius[i]) / ends) * share[i];
-        const std::size_t task = block.tasks[std::min<std::size_t>(i, block.tasks.size() - 1)];
-        if (planned) roughness[i] = std::max(roughness[i], tasks_[task].plan->roughness);
-      }
-      physics::height_error(*block.rule, std::span(outcomes_).subspan(block.first_pack + from, count),
-                            actuated ? &SliceOutcomes::pressure_actuated : &SliceOutcomes::pressure_rest,
-                            roughness, error, mean);
-      for (int i = 0; i < pack_width; ++i) {
-        sum[i] += share[i] * error[i];
-        whole[i] += share[i] * mean[i];
-      }
-    }
-    for (int i = 0; i < pack_width; ++i)
-      worst[i] = std::max(worst[i], whole[i] > 0 ? sum[i] / whole[i] : 0.0);
+  Pack worst{}, found;
+  height_error(block, &SliceOutcomes::pressure_rest, worst);
+  if (energised_) {
+    height_error(block, &SliceOutcomes::pressure_actuated, found);
+    for (int i = 0; i < pack_width; ++i) worst[i] = std::max(worst[i], found[i]);
+  }
+  const auto wants_volume = [&](std::size_t task) {
+    return planned && tasks_[task].scene->goal.of(tasks_[task].segment).volume_change;
+  };
+  if (std::any_of(block.tasks.begin(), block.tasks.end(), wants_volume)) {
+    height_error(block, &SliceOutcomes::strain_actuated, found);
+    for (std::size_t i = 0; i < block.tasks.size(); ++i)
+      if (const int place = static_cast<int>(i); wants_volume(block.tasks[i]))
+        worst[place] = std::max(worst[place], found[place] / tasks_[block.tasks[i]].plan->factor);
   }
   tell([&](int place, const SlicePlan* plan) {
     // The forecast may not have known.
@@ -83,20 +96,17 @@ void SliceModel::height_errors(const Block& block) {
     if (!(worst[static_cast<int>(i)] < largest_own_error)) unclear_.push_back(block.tasks[i]);
 }
 
-// What models beyond this one would change in the pressures, as far as it is known, from what those beyond
-// slices would.
-double SliceModel::model_error(std::size_t task, const model::SegmentResult& result, double beyond) const {
+// What slices would change in the pressures of a simpler model; not_known: that is not known.
+double SliceModel::error_before_slices(std::size_t task, model::Fidelity fidelity) const {
   const model::Scene& scene = *tasks_[task].scene;
-  if (!std::isfinite(beyond)) return not_known;
-  if (result.fidelity == model::Fidelity::slice || scene.leg.model == model::LegModel::rigid) return beyond;
-  if (tasks_[task].plan) return beyond + tasks_[task].plan->model_error;
+  if (fidelity == model::Fidelity::slice || scene.leg.model == model::LegModel::rigid) return 0;
+  if (tasks_[task].plan) return tasks_[task].plan->model_error;
   // A leg without compliance has none to correct for.
   const bool known = scene.leg.material != model::LegMaterial::compliance ||
                      scene.leg.segments[tasks_[task].segment].compliance.b > 0;
-  if (!known) return not_known;
-  const double error = beyond + foreseen_[task].model_error;
   // A leg that gives way may feel nothing at all, and no multiple of that is the error.
-  return std::isfinite(error) ? error : not_known;
+  const double error = foreseen_.empty() ? not_known : foreseen_[task].model_error;
+  return known && std::isfinite(error) ? error : not_known;
 }
 
 // Of the tasks left, from the average of the starting values, which are close to the pressures.

@@ -330,8 +330,9 @@ void SliceModel::summarise(model::Fidelity fidelity) {
           highest[static_cast<int>(i)] > block.segments.constants.data_limit[static_cast<int>(i)])
         result.status = Status::extrapolated;
       if (!model::trustworthy(result.status)) continue;
-      result.model_error = model_error(task, result, beyond[static_cast<int>(i)]);
-      model::derive_error(result);
+      const double before = error_before_slices(task, fidelity), after = beyond[static_cast<int>(i)];
+      result.model_error = std::isfinite(after) ? after + before : not_known;
+      model::derive_error(result, before);
     }
   }
 }

@@ -92,11 +92,12 @@ inline double rounded_up(double error) {
   return std::bit_cast<double>((std::bit_cast<std::uint64_t>(error) + rest) & ~rest);
 }
 
-// Rounds the errors and fills in their sum.
-inline void derive_error(SegmentResult& result) {
+// Rounds the errors and fills in their sum. `known`: the part of the model's error that is, where that is
+// not.
+inline void derive_error(SegmentResult& result, double known = 0) {
   result.discretisation_error = rounded_up(result.discretisation_error);
   result.model_error = rounded_up(result.model_error);
-  const double beyond = result.model_error >= 0 ? result.model_error : 0;
+  const double beyond = result.model_error >= 0 ? result.model_error : known >= 0 ? known : 0;
   result.error_estimate = rounded_up(result.discretisation_error + beyond);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "gaiter/physics/forecast_laws.hpp"
+#include "gaiter/physics/height_error.hpp"
 
 namespace gaiter::physics {
 
@@ -27,6 +28,10 @@ class QuickForecast {
   // Errors of Gauss rules of so many points; few are ever asked for.
   double height_error(int place, int points) const;
   double wall_error(int place, int points) const;
+  // The leg under voltage, where there is one.
+  LoadedLeg loaded(int place) const {
+    return {loaded_pressure_[place], loaded_strain_[place], loaded_response_[place], loaded_give_[place]};
+  }
 
   // `rest`, `actuated`: 1 where that state's pressure counts, else 0.
   void analyse(const Input& input, const Pack& rest, const Pack& actuated);
@@ -39,10 +44,11 @@ class QuickForecast {
   void work_out(const Input& input, const Pack& rest, const Pack& actuated);
   void work_out_again(Input& input, const Pack& rest, const Pack& actuated);
 
-  Pack tapers_;  // 1 or 0
-  Pack share_;   // the most that an error of the rigid leg's pressure counts for [1/Pa]
+  Pack taper_;  // half the difference of the end radii over the mean radius, without its sign
+  Pack share_;  // the most that an error of the rigid leg's pressure counts for [1/Pa]
   LegPoles<Number> poles_;
   ForecastErrors<Number> errors_;
+  Pack loaded_pressure_, loaded_strain_, loaded_response_, loaded_give_;
 };
 
 template <typename Number>
@@ -53,7 +59,7 @@ double QuickForecast<Number>::height_error(int place, int points) const {
   double of_leg[2] = {poles_.part[0][place], poles_.part[1][place]};
   for (int n = 0; n < points; ++n)
     for (int k = 0; k < 2; ++k) of_leg[k] *= poles_.fall[k][place];
-  return tapers_[place] * (of_bandage + of_leg[0] + of_leg[1]);
+  return taper_[place] > 0 ? of_bandage + of_leg[0] + of_leg[1] : 0;
 }
 
 template <typename Number>

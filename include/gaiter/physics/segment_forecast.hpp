@@ -7,6 +7,7 @@
 
 #include "gaiter/model/scene.hpp"
 #include "gaiter/physics/forecast_kernel.hpp"
+#include "gaiter/physics/height_error.hpp"
 
 namespace gaiter::physics {
 
@@ -39,6 +40,8 @@ class SegmentForecast {
 
   // Of the average by a Gauss rule of `slices` points over the height, in each piece between cuts().
   double height_error(int slices) const;
+  // The leg under voltage, where there is one.
+  LoadedLeg loaded() const;
   // Of the Gauss rule of `points` points through the wall.
   double wall_error(int points) const;
   // Change of the mean pressure if the tube slides without friction (or, held, lies on the slope), to first

@@ -23,6 +23,7 @@ struct QuickSegment {
   double first_order_error() const { return pack.first_order[place]; }
   double first_order_at_middle() const { return pack.first_order_at_middle[place]; }
   double height_error(int slices) const { return pack.height_error(place, slices); }
+  physics::LoadedLeg loaded() const { return pack.loaded(place); }
   double wall_error(int points) const { return pack.wall_error(place, points); }
   double drop_factor() const { return pack.drop_factor[place]; }
   double volume_factor() const { return pack.volume_factor[place]; }

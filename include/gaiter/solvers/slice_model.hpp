@@ -117,7 +117,9 @@ class SliceModel {
   void small_drops();
   void small_drops(const physics::Quadrature& gauss, std::span<const std::size_t> slices);
   void summarise(model::Fidelity fidelity);
-  double model_error(std::size_t task, const model::SegmentResult& result, double beyond) const;
+  double error_before_slices(std::size_t task, model::Fidelity fidelity) const;
+  void height_error(const Block& block, physics::Pack physics::SliceOutcomes::*quantity,
+                    physics::Pack& relative) const;
   void height_errors(const Block& block);
   void errors_of_start(bool rigid);
   void errors_of_start(std::span<const std::size_t> tasks, bool rigid);
