@@ -21,6 +21,13 @@ inline double error_of(const model::SegmentResult& found, const model::SegmentRe
   return model::trustworthy(found.status) ? error : 1e300;
 }
 
+// The same of another output than the pressures.
+inline double error_of(const model::SegmentResult& found, const model::SegmentResult& truth,
+                       double model::SegmentResult::*output) {
+  if (!output) return error_of(found, truth);
+  return model::trustworthy(found.status) ? std::fabs(found.*output / truth.*output - 1) : 1e300;
+}
+
 inline double quantile(std::vector<double> values, double part) {
   if (values.empty()) return 0;
   std::sort(values.begin(), values.end());
