@@ -172,7 +172,7 @@ struct States {
   State<Number> rest, actuated;
 };
 
-// Of the slices at mid-height; `sure`: 1 where they are known well enough, else 0.
+// Of one slice a segment; `sure`: 1 where its states are known well enough, else 0.
 template <typename Number>
 GAITER_INLINE void find_states(const ForecastInput<Number>& input, PackOf<Number>& sure,
                                States<Number>& found) {
