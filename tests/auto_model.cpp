@@ -66,8 +66,8 @@ TEST(Forecast, OfTheLegsGivingWayAndItsFirstOrder) {
   }
 }
 
-// Where it is sure, the quick forecast tells about what the full one does; it is not where the bandage leaves
-// the leg.
+// Where it is sure, the quick forecast tells about what the full one does, in either precision; it is not
+// where the bandage leaves the leg.
 TEST(Forecast, QuickOneAgreesWithTheFullOne) {
   physics::Pack counts;
   for (int i = 0; i < physics::pack_width; ++i) counts[i] = 1;
@@ -80,6 +80,24 @@ TEST(Forecast, QuickOneAgreesWithTheFullOne) {
       input.set(segment, scene, static_cast<std::size_t>(segment));
     input.close(6);
     quick.analyse(input, counts, counts);
+    physics::ForecastInput<float> roughly;
+    physics::QuickForecast<float> single;
+    physics::PackOf<float> all;
+    for (int i = 0; i < physics::pack_width; ++i) all[i] = 1;
+    roughly.start(scene);
+    for (int segment = 0; segment < 6; ++segment)
+      roughly.set(segment, scene, static_cast<std::size_t>(segment));
+    roughly.close(6);
+    single.analyse(roughly, all, all);
+    for (int segment = 0; segment < 6; ++segment) {
+      ASSERT_EQ(static_cast<double>(single.sure[segment]), quick.sure[segment]);
+      EXPECT_NEAR(static_cast<double>(single.compliance[segment]), quick.compliance[segment], 1e-5);
+      EXPECT_NEAR(static_cast<double>(single.first_order[segment]), quick.first_order[segment], 1e-5);
+      for (int points = 1; points <= 3; ++points) {
+        EXPECT_NEAR(single.height_error(segment, points) / quick.height_error(segment, points), 1, 1e-2);
+        EXPECT_NEAR(single.wall_error(segment, points) / quick.wall_error(segment, points), 1, 1e-2);
+      }
+    }
     for (int segment = 0; segment < 6; ++segment) {
       physics::SegmentForecast full(scene, static_cast<std::size_t>(segment));
       full.analyse();
@@ -306,14 +324,14 @@ TEST(Forecast, OfTheVolumeOverTheHeight) {
     const model::Scene scene = paper::scene(stretch, 4e3);
     for (std::size_t segment = 0; segment < 3; ++segment) {
       const model::Segment& part = scene.leg.segments[segment];
-      const double taper = 0.5 * (part.upper_radius - part.lower_radius) / part.mean_radius();
       const auto truth = resolved(scene, segment);
       physics::SegmentForecast forecast(scene, segment);
       forecast.analyse();
       for (int slices = 1; slices <= 3; ++slices) {
         const auto found = by_plan(scene, segment, {.slice_count = slices, .wall_points = 16});
         const double error = std::fabs(found.volume_change / truth.volume_change - 1);
-        const double told = physics::volume_height_error(scene.leg, part, forecast.loaded(), taper, slices);
+        const double told =
+            physics::volume_height_error(scene.leg, part, forecast.loaded(), part.taper(), slices);
         EXPECT_GT(told, error) << stretch << ", segment " << segment << ", " << slices;
         EXPECT_LT(told, 300 * error + 1e-12) << stretch << ", segment " << segment << ", " << slices;
       }

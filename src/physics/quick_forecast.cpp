@@ -16,6 +16,15 @@ constexpr float beyond_all = 1e30f;
 template <typename Number>
 constexpr Number rounding = 16 * std::numeric_limits<Number>::epsilon();
 
+// Of a pressure, relative. The leg's strain is a difference, and a bandage that is hardly stretched feels its
+// last digits.
+template <typename Number>
+GAITER_INLINE Number noise(const ForecastInput<Number>& input, const State<Number>& s, int i) {
+  const bool law = input.material == model::LegMaterial::compliance;
+  const Number parts = law ? std::fabs(input.leg[0][i]) + std::fabs(input.leg[2][i]) : Number(1);
+  return rounding<Number> * (1 + parts * std::fabs(s.slope[i]) / (s.pressure[i] * (1 + s.gain[i])));
+}
+
 // What a state that counts says of the errors, if that is worse than what another did.
 template <typename Number>
 GAITER_INLINE void tell(const ForecastInput<Number>& input, const State<Number>& s,
@@ -46,12 +55,14 @@ GAITER_INLINE void tell(const ForecastInput<Number>& input, const State<Number>&
     const Number missed = caution * std::fabs(s.first[i] / s.pressure[i] - 1);
     const Number yields = counts[i] * input.gives_way[i], size = std::fabs(s.strain[i]);
     const Number of_middle = caution_of_mean(x[i]) * std::fabs(fall[i] - 1);
-    const Number rigid_error = yields * (spread * of_middle + rounding<Number>);
-    const Number first_error = yields * (spread_of_cube * larger(missed, typical) + rounding<Number>);
+    const Number rounded = noise(input, s, i);
+    const Number rigid_error = yields * (spread * of_middle + rounded);
+    const Number first_error = yields * (spread_of_cube * larger(missed, typical) + rounded);
+    const Number at_middle = yields * (missed / caution + rounded);
     const Number volume = counts[i] * s.pressure[i] * s.response[i] / (size > 0 ? size : Number(beyond_all));
     found.compliance[i] = larger(found.compliance[i], rigid_error);
     found.first_order[i] = larger(found.first_order[i], first_error);
-    found.first_order_at_middle[i] = larger(found.first_order_at_middle[i], yields * missed / caution);
+    found.first_order_at_middle[i] = larger(found.first_order_at_middle[i], at_middle);
     found.volume_factor[i] = larger(found.volume_factor[i], volume);
     share[i] = larger(share[i], own_share);
   }
@@ -64,9 +75,10 @@ GAITER_INLINE void tell(const ForecastInput<Number>& input, const State<Number>&
 // Of both heights together, if that is worse than what another state had: with e the error there and P the
 // pressure, sum e P over sum P, which is exact to the third order in the height.
 template <typename Number>
-GAITER_INLINE void compare(const State<Number>& low, const State<Number>& high,
-                           const PackOf<Number>& wrong_low, const PackOf<Number>& wrong_high, int doubts,
-                           const PackOf<Number>& counts, PackOf<Number>& error) {
+GAITER_INLINE void compare(const ForecastInput<Number>& input, const State<Number>& low,
+                           const State<Number>& high, const PackOf<Number>& wrong_low,
+                           const PackOf<Number>& wrong_high, int doubts, const PackOf<Number>& counts,
+                           PackOf<Number>& error) {
   GAITER_EACH {
     const Number inverse = 1 / (low.pressure[i] + high.pressure[i]);
     const Number below = wrong_low[i] - low.pressure[i], above = wrong_high[i] - high.pressure[i];
@@ -74,7 +86,8 @@ GAITER_INLINE void compare(const State<Number>& low, const State<Number>& high,
     // The next order, larger where the two are small together by chance.
     const Number beyond = Number(0.03) * apart * apart / (mean + apart + least<Number>);
     const Number doubt = larger(low.doubt[i], high.doubt[i]);
-    const Number found = caution_of_two * mean + beyond + doubts * doubt + rounding<Number>;
+    const Number rounded = larger(noise(input, low, i), noise(input, high, i));
+    const Number found = caution_of_two * mean + beyond + doubts * doubt + rounded;
     error[i] = larger(error[i], counts[i] * found);
   }
 }
@@ -154,8 +167,8 @@ GAITER_INLINE void QuickForecast<Number>::work_out_again(Input& input, const Pac
     compliance[i] = first_order[i] = 0;
   }
   const auto take = [&](const State<Number>& low, const State<Number>& high, const Pack& counts) {
-    compare(low, high, low.rigid, high.rigid, 1, counts, compliance);
-    compare(low, high, low.first, high.first, 3, counts, first_order);
+    compare(input, low, high, low.rigid, high.rigid, 1, counts, compliance);
+    compare(input, low, high, low.first, high.first, 3, counts, first_order);
   };
   take(at[0].rest, at[1].rest, rest_counts);
   if (input.energised) take(at[0].actuated, at[1].actuated, actuated_counts);

@@ -68,8 +68,17 @@ int common_count(int slices) {
 
 double volume_error(const SegmentTask& task, const physics::LoadedLeg& loaded, int slices) {
   const model::Segment& segment = task.scene->leg.segments[task.segment];
-  const double taper = 0.5 * (segment.upper_radius - segment.lower_radius) / segment.mean_radius();
-  return physics::volume_height_error(task.scene->leg, segment, loaded, taper, slices);
+  return physics::volume_height_error(task.scene->leg, segment, loaded, segment.taper(), slices);
+}
+
+// In each piece of the height, unless the bandage stiffens too fast over it.
+bool two_slices_do(const SegmentTask& task, double tolerance) {
+  double steepest = 0;
+  for (const model::OgdenTerm& term : task.scene->bandage.ogden)
+    steepest = std::max(steepest, std::fabs(term.alpha));
+  const double rate = 2 * steepest * std::fabs(task.scene->leg.segments[task.segment].taper());
+  return error_of_two_slices < tolerance &&
+         physics::gauss_error_of_exponential(2, rate) < error_of_two_slices;
 }
 
 // False: the forecast does not reach far enough.
@@ -98,7 +107,7 @@ bool choose_points(const SegmentTask& task, const Forecast& forecast, SlicePlan&
     plan.slice_count += 1 + plan.slice_count / most_smooth_slices;
   if (plan.slice_count == physics::fewest_for_height_error && tolerance < tolerance_of_fewest_slices)
     ++plan.slice_count;
-  if (cut && error_of_two_slices < left) {
+  if (cut && two_slices_do(task, left)) {
     plan.slice_count = 2;
     plan.height_error = error_of_two_slices;
   } else if (cut || plan.slice_count > most_smooth_slices) {

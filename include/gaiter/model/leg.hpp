@@ -31,6 +31,8 @@ struct Segment {
   } given{};  // before the leg's scales, which Leg::scale applies; nothing else looks at it
 
   double mean_radius() const { return 0.5 * (lower_radius + upper_radius); }  // [m]
+  // Half the difference of the end radii over that.
+  double taper() const { return 0.5 * (upper_radius - lower_radius) / mean_radius(); }
 };
 
 struct Leg {
