@@ -66,29 +66,30 @@ TEST(Forecast, OfTheLegsGivingWayAndItsFirstOrder) {
   }
 }
 
+// Of all segments of a scene, once or twice.
+template <typename Number>
+physics::QuickForecast<Number> quickly(const model::Scene& scene, bool twice = false) {
+  physics::ForecastInput<Number> input;
+  physics::QuickForecast<Number> quick;
+  physics::PackOf<Number> counts;
+  for (Number& one : counts.value) one = 1;
+  input.start(scene);
+  const int count = static_cast<int>(scene.leg.segments.size());
+  for (int segment = 0; segment < count; ++segment)
+    input.set(segment, scene, static_cast<std::size_t>(segment));
+  input.close(count);
+  quick.analyse(input, counts, counts);
+  if (twice) quick.look_again(input, counts, counts);
+  return quick;
+}
+
 // Where it is sure, the quick forecast tells about what the full one does, in either precision; it is not
 // where the bandage leaves the leg.
 TEST(Forecast, QuickOneAgreesWithTheFullOne) {
-  physics::Pack counts;
-  for (int i = 0; i < physics::pack_width; ++i) counts[i] = 1;
   for (const double stretch : {1.2, 1.4, 1.8, 2.2}) {
     const model::Scene scene = paper::scene(stretch, 5e3);
-    physics::ForecastInput<double> input;
-    physics::QuickForecast<double> quick;
-    input.start(scene);
-    for (int segment = 0; segment < 6; ++segment)
-      input.set(segment, scene, static_cast<std::size_t>(segment));
-    input.close(6);
-    quick.analyse(input, counts, counts);
-    physics::ForecastInput<float> roughly;
-    physics::QuickForecast<float> single;
-    physics::PackOf<float> all;
-    for (int i = 0; i < physics::pack_width; ++i) all[i] = 1;
-    roughly.start(scene);
-    for (int segment = 0; segment < 6; ++segment)
-      roughly.set(segment, scene, static_cast<std::size_t>(segment));
-    roughly.close(6);
-    single.analyse(roughly, all, all);
+    const auto quick = quickly<double>(scene);
+    const auto single = quickly<float>(scene);
     for (int segment = 0; segment < 6; ++segment) {
       ASSERT_EQ(static_cast<double>(single.sure[segment]), quick.sure[segment]);
       EXPECT_NEAR(static_cast<double>(single.compliance[segment]), quick.compliance[segment], 1e-5);
@@ -113,14 +114,7 @@ TEST(Forecast, QuickOneAgreesWithTheFullOne) {
       }
     }
   }
-  physics::ForecastInput<double> input;
-  physics::QuickForecast<double> quick;
-  const model::Scene open = part_open();
-  input.start(open);
-  input.set(0, open, 0);
-  input.close(1);
-  quick.analyse(input, counts, counts);
-  EXPECT_EQ(quick.sure[0], 0);
+  EXPECT_EQ(quickly<double>(part_open()).sure[0], 0);
 }
 
 // The second look from two heights is close to the true errors of both models, at rest and under voltage, on
@@ -130,16 +124,7 @@ TEST(Forecast, SecondLookKnowsTheModelsErrors) {
     for (const double stretch : {1.2, 1.4, 1.8}) {
       model::Scene scene = paper::scene(stretch, 5e3);
       if (soft_tissue) scene.leg.material = model::LegMaterial::neo_hookean;
-      physics::ForecastInput<double> input;
-      physics::Pack counts;
-      for (int i = 0; i < physics::pack_width; ++i) counts[i] = 1;
-      physics::QuickForecast<double> quick;
-      input.start(scene);
-      for (int segment = 0; segment < 6; ++segment)
-        input.set(segment, scene, static_cast<std::size_t>(segment));
-      input.close(6);
-      quick.analyse(input, counts, counts);
-      quick.look_again(input, counts, counts);
+      const auto quick = quickly<double>(scene, true);
       for (std::size_t segment = 0; segment < 6; ++segment) {
         ASSERT_GT(quick.sure[segment], 0) << stretch << ", segment " << segment;
         const auto truth = resolved(scene, segment);
