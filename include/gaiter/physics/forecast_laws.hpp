@@ -59,6 +59,18 @@ GAITER_INLINE void log1p_each(const PackOf<Number>& x, PackOf<Number>& out) {
   GAITER_EACH out[i] = std::log1p(x[i]);
 }
 
+// Those of the strain law, exp(bP) and exp(dP).
+template <typename Number>
+GAITER_INLINE void exponentials(const ForecastInput<Number>& input, const PackOf<Number>& pressure,
+                                PackOf<Number>& first, PackOf<Number>& second) {
+  GAITER_EACH {
+    first[i] = clamped(input.leg[1][i] * pressure[i]);
+    second[i] = clamped(input.leg[3][i] * pressure[i]);
+  }
+  exp_each(first, first);
+  exp_each(second, second);
+}
+
 // The leg's strain, its derivative, and how fast that one changes.
 template <typename Number>
 GAITER_INLINE void strain_law(const ForecastInput<Number>& input, const PackOf<Number>& pressure,
@@ -82,12 +94,7 @@ GAITER_INLINE void strain_law(const ForecastInput<Number>& input, const PackOf<N
     return;
   }
   PackOf<Number> grown, decayed;
-  GAITER_EACH {
-    grown[i] = clamped(leg[1][i] * pressure[i]);
-    decayed[i] = clamped(leg[3][i] * pressure[i]);
-  }
-  exp_each(grown, grown);
-  exp_each(decayed, decayed);
+  exponentials(input, pressure, grown, decayed);
   GAITER_EACH {
     const Number growing = leg[0][i] * grown[i], decaying = leg[2][i] * decayed[i];
     strain[i] = growing + decaying;
@@ -164,12 +171,7 @@ GAITER_INLINE void find_poles(const ForecastInput<Number>& input, const PackOf<N
     }
     return;
   }
-  GAITER_EACH {
-    first[i] = clamped(leg[1][i] * pressure[i]);
-    second[i] = clamped(leg[3][i] * pressure[i]);
-  }
-  exp_each(first, first);
-  exp_each(second, second);
+  exponentials(input, pressure, first, second);
   GAITER_EACH {
     const Number size = input.gives_way[i] * std::fabs(slope[i]);
     first[i] *= size * std::fabs(leg[0][i] * leg[1][i]);
